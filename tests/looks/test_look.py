@@ -261,6 +261,7 @@ def test_a_molecule_has_balls_for_its_atoms_and_sticks_between_them(tmp_path):
     # Each half of a stick has the colour of its own atom.
     assert far.max() < 0.5
     assert look.drawing.keys[0]["title"] == "atom_type"
+    assert vizlight.look(path, size=SIZE, array="radius").array == "radius"
 
 
 def test_a_part_with_most_points_on_its_surface_shows_values_there():

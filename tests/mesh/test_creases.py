@@ -17,6 +17,10 @@ def test_creases_of_a_box_are_its_edges_and_a_ball_has_none():
     faces = block.regular_faces.copy()
     faces[::3] = faces[::3, ::-1]
     assert render.creases(pv.PolyData.from_regular_faces(block.points, faces)).n_cells == 12 * 4
+    # Polylines beside the faces count for nothing.
+    lines = np.insert(np.arange(180).reshape(-1, 3) % block.n_points, 0, 3, axis=1).ravel()
+    beside = pv.PolyData(block.points, faces=np.insert(faces, 0, 3, axis=1).ravel(), lines=lines)
+    assert render.creases(beside).n_cells == 12 * 4
     # Faces that are there twice have no edge between two faces alone.
     twice = pv.PolyData(block.points, np.concatenate([block.faces, block.faces]))
     assert not render.creases(twice).n_cells

@@ -215,6 +215,20 @@ def test_walls_of_solid_cells_are_there_once_with_their_data(flip):
     assert pv.PolyData(found.points, found.faces).volume == pytest.approx(6)
 
 
+def test_curved_walls_of_curved_solid_cells_are_there_once():
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    edges = [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]
+    points = np.concatenate([corners, [corners[list(edge)].mean(axis=0) for edge in edges]])
+    cells = [10, *range(10), 6, 0, 1, 2, 4, 5, 6]
+    grid = pv.UnstructuredGrid(cells, [24, 22], points)
+    grid["ref"] = [1, 2]
+    found = pv.PolyData(hull.outer_surface(grid)[0])
+    assert found.n_cells == 16
+    assert found.is_manifold
+    assert sorted(found["ref"]) == [1] * 12 + [2] * 4
+    assert found.volume == pytest.approx(1 / 6)
+
+
 @pytest.mark.parametrize("kind", [24, 25, 26, 27, 29])
 def test_the_faces_of_curved_cells_share_their_points_and_face_outward(kind):
     source = vtkCellTypeSource()

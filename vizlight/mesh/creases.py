@@ -57,8 +57,9 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
     if not share_of_creases(surface, has_normals=carried):
         return pv.PolyData()
     if not _are_wound_alike(surface):
-        # VTK takes the edge between a face and one wound the other way for a crease.
-        surface = surface.compute_normals(
+        # VTK takes the edge between a face and one wound the other way for a crease, and winds the
+        # wrong faces where there are polylines too.
+        surface = pv.PolyData(surface.points, surface.faces).compute_normals(
             point_normals=False, split_vertices=False, consistent_normals=True
         )
     edges = surface.extract_feature_edges(

@@ -126,13 +126,17 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         if walled:
             _join_walls(surface, mesh)
         return surface, ids
-    cells = as_numpy(surface.GetCellData().GetArray(NUMBERS))
+    numbers = as_numpy(surface.GetCellData().GetArray(NUMBERS)).copy()
     surface.GetCellData().RemoveArray(NUMBERS)
     if isinstance(mesh, vtkUnstructuredGrid):
         # Cells are numbered by VTK's kinds: vertices and lines first.
-        cells = cells[surface.GetNumberOfVerts() + surface.GetNumberOfLines() :]
+        cells = numbers[surface.GetNumberOfVerts() + surface.GetNumberOfLines() :]
         surface.SetPolys(_outward(surface, mesh, cells))
-    return _merged(surface, ids)
+    merged, ids = _merged(surface, ids)
+    if _has_walls(mesh):
+        merged.GetCellData().AddArray(as_vtk(numbers, NUMBERS))
+        _join_walls(merged, mesh)
+    return merged, ids
 
 
 def _has_walls(mesh: Dataset) -> bool:

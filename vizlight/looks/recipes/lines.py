@@ -99,6 +99,9 @@ def is_molecule(mesh: pv.DataSet) -> bool:
 def molecule(case: Case) -> Drawing:
     """Draw the atoms of a molecule as balls, and its bonds as sticks, in the colours of values."""
     array, atoms = case.needed_array, case.data
+    if array.name == "radius":
+        # Balls have it as their size alone.
+        return lines(case)
     bonds = atoms
     if array.role == "kinds":
         bonds = Step("halves", "files.surface_of", atoms, labels=array.name)
