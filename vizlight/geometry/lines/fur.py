@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight import _check
+from vizlight import _check, _pool
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -17,6 +17,8 @@ __all__ = ["seeds"]
 
 #: Number of seeds per block; each block has its own random generator, independent of threads.
 SEED_BLOCK = 1 << 16
+#: Number of triangles that are worked on at once, such that their places fit in the cache.
+FEW = 1 << 14
 #: Step of a Fibonacci lattice, 2 minus the golden ratio: its multiples fill [0, 1) evenly.
 TURN = (3 - 5**0.5) / 2
 
@@ -88,10 +90,12 @@ def laid(vertices: Array, triangles: Indices) -> tuple[Indices, Array]:
 
     An area that is not finite is 0.
     """
-    a, b, c = (vertices[triangles[:, i]].astype(np.float64) for i in range(3))
+    area, centre = np.empty(len(triangles)), np.empty((len(triangles), 3))
     with np.errstate(all="ignore"):
-        area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-        centre = a + b + c
+        for block in _pool.blocks(len(triangles), FEW):
+            a, b, c = (vertices[corner].astype(np.float64) for corner in triangles[block].T)
+            area[block] = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+            centre[block] = a + b + c
         # One infinite centre would make the box endless, and the order of all others meaningless.
         centre[~np.all(np.isfinite(centre), axis=1)] = np.nan
         # With an initial value a surface without triangles is no error here.
@@ -103,8 +107,11 @@ def laid(vertices: Array, triangles: Indices) -> tuple[Indices, Array]:
         # Enough for 4 cells between neighbours, and no more: sorting grows with the bits.
         bits = min(max(len(triangles).bit_length() // 2 + 2, 4), 20)
         # Triangles without a centre come anywhere: their area is 0, and no seed falls on them.
-        places = np.nan_to_num((centre - low) / side) * ((1 << bits) - 1)
-        order = np.argsort(hilbert(np.ascontiguousarray(places.T).astype(np.int64), bits))
+        index = np.empty(len(triangles), dtype=np.int64)
+        for block in _pool.blocks(len(triangles), FEW):
+            places = np.nan_to_num((centre[block] - low) / side) * ((1 << bits) - 1)
+            index[block] = hilbert(np.ascontiguousarray(places.T).astype(np.int64), bits)
+        order = np.argsort(index)
     return order, np.cumsum(area[order])
 
 
