@@ -129,7 +129,7 @@ def refine(
     ``error``. Were a share p of all places, it would be missed with probability ``(1 - p)^4096``:
     with 95 % confidence fewer than 0.08 % are. On a sphere, a cylinder with creases, a terrain, a
     torus with tangents, the flow on an isosurface and a blob the largest error at 100,000 places is
-    less than 3 times that allowed. It is more at these places: where light jumps, as where a
+    less than 5 times that allowed. It is more at these places: where light jumps, as where a
     surface with a rim turns to the eye, up to 0.4 at 0.2 % of an isosurface; where tangents vanish
     between opposite ones, up to 0.7 at 0.5 % of a triangle; in slivers narrower than 1/4096 of the
     diagonal, which are not split, 10 times that allowed. No warning is given where 0.5 % of the
