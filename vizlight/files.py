@@ -515,6 +515,8 @@ def _found(
     contents: pv.DataObject | None = foreign_files.read(path, time, at=at, nodata=nodata)
     contents = series.read(path, time) if contents is None else contents
     contents = _by_package(path) if contents is None else contents
+    if path.suffix.lower() in (".nrrd", ".nhdr") and isinstance(contents, pv.DataSet):
+        brains.name_segments(contents, path)
     if path.suffix.lower() in _MESHERS:
         # As a block it is reduced to its cells of the highest dimension, see
         # :func:`.blocks.one_grid`.
@@ -748,6 +750,7 @@ def _of_labels(mesh: pv.DataSet | pv.MultiBlock, name: str) -> pv.PolyData:
     rows = np.asarray(boundary.cell_data["boundary_labels"])
     boundary.clear_data()
     boundary.cell_data[name] = rows
+    georeference.place_alike(boundary, mesh)
     return boundary
 
 

@@ -254,3 +254,20 @@ def test_values_of_brain_models_without_places_say_what_to_become(tmp_path):
     image.to_filename(tmp_path / "a.dscalar.nii")
     with pytest.raises(vizlight.files.FileError, match="CIFTI.*GIFTI.*overlay="):
         vizlight.read(tmp_path / "a.dscalar.nii")
+
+
+def test_segments_of_a_file_of_labels_have_their_names_and_colours(tmp_path):
+    labels = np.zeros((4, 5, 12), np.uint8)
+    labels[1:3, 1:4, 1:3], labels[1:3, 1:4, 3:5] = 2, 7
+    fields = [
+        "NRRD0004", "type: unsigned char", "dimension: 3", "sizes: 12 5 4", "encoding: raw",
+        "Segment0_Name:=left lung", "Segment0_LabelValue:=2", "Segment0_Color:=1 0.5 0",
+        "Segment1_Color:=0 0 1", "Segment1_LabelValue:=7", "Segment1_Name:=heart",
+    ]  # fmt: skip
+    path = tmp_path / "a.seg.nrrd"
+    path.write_bytes("\n".join([*fields, "\n"]).encode() + labels.tobytes())
+    mesh = vizlight.read(path)
+    assert meaning.flags(mesh, "segment") == {2: "left lung", 7: "heart"}
+    assert meaning.flags(mesh, "segment", "colors") == {2: "#ff8000", 7: "#0000ff"}
+    look = vizlight.look(path)
+    assert look.drawing.keys[0]["cmap"].arguments[0] == {2: "left lung", 7: "heart"}

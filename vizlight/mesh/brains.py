@@ -60,6 +60,9 @@ _TT = 32
 #: Note on values at the points of a surface, such as its curvature.
 NO_SURFACE = "values over a surface, without one: read the surface, and pass this file as overlay="
 
+#: Fields of a segment in the header of an NRRD file.
+_SEGMENT = re.compile(r"(?m)^Segment(\d+)_(Name|LabelValue|Color):=(.*)$")
+
 
 def is_freesurfer(path: Path) -> bool:
     """Return whether a file begins like FreeSurfer's surfaces and arrays.
@@ -406,3 +409,33 @@ def tracks_of_tt(path: Path) -> tuple[AnyArray, AnyArray, AnyArray]:
         # In mm along the axes of the image, from its first voxel.
         points = places * np.ravel(parts["voxel_size"])
     return points, np.cumsum(counts) - counts, counts
+
+
+def name_segments(image: pv.DataSet, path: Path) -> None:
+    """Give labels of an NRRD file the names and colours of its segments, as 3D Slicer writes them.
+
+    Parameters
+    ----------
+    image : pyvista.DataSet
+        Contents of the file; its array of labels is named "segment" if there are segments.
+    path : pathlib.Path
+        Path of the file.
+    """
+    with path.open("rb") as file:
+        head = file.read(1 << 16).partition(b"\n\n")[0].decode("utf-8", "replace")
+    parts: dict[str, dict[str, str]] = {}
+    for number, key, value in _SEGMENT.findall(head):
+        parts.setdefault(number, {})[key] = value.strip()
+    kinds = []
+    for part in parts.values():
+        try:
+            color = [float(word) for word in part["Color"].split()]
+            kinds.append((int(part["LabelValue"]), part.get("Name", ""), color))
+        except (KeyError, ValueError):
+            return  # segments without labels or colours are layers of components
+    names = image.point_data.keys()
+    if kinds and len(names) == 1 and image.point_data[names[0]].dtype.kind in "iu":
+        image.rename_array(names[0], "segment", preference="point")
+        said = meaning.Meaning()
+        said.add_kinds("segment", kinds)
+        meaning.attach(image, said)
