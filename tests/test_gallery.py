@@ -264,7 +264,26 @@ def test_the_first_page_is_light(chromium):
         page, read_files, _ = visit(context, "index")
         page.wait_for_load_state("networkidle")
         paths = {unquote(urlsplit(url).path) for url in read_files if url.startswith("file:")}
+        # The scene comes after the page, in place of a picture.
+        assert [Path(path).name for path in paths if "/scenes/" in path] == ["front.html"]
+        paths = {path for path in paths if "/scenes/" not in path}
         assert sum(Path(path).stat().st_size for path in paths) < 1e6
+
+
+@browser
+def test_the_first_page_has_a_scene_in_place_of_a_picture(chromium):
+    """Without WebGL the picture stays."""
+    for options in (browsers.SOFTWARE, ["--no-sandbox", "--disable-3d-apis"]):
+        bare = chromium.browser_type.launch(executable_path=browsers.CHROMIUM, args=options)
+        page, _, _ = visit(bare.new_context(), "index")
+        scene = page.locator(".divided iframe")
+        scene.element_handle().content_frame().wait_for_selector("body[data-ready], [role=alert]")
+        drawn = "frame => frame.classList.contains('ready')"
+        if options is browsers.SOFTWARE:
+            page.wait_for_function(drawn, arg=scene.element_handle())
+        assert scene.is_visible() == scene.evaluate(drawn) == (options is browsers.SOFTWARE)
+        assert page.locator(".divided img").evaluate("picture => picture.naturalWidth") > 1000
+        bare.close()
 
 
 @browser

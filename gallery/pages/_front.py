@@ -1,17 +1,22 @@
-"""The pictures of the first page: what a look makes of embedded data of six kinds.
+"""The scene and the pictures of the first page: what a look makes of embedded data of six kinds.
 
-``python gallery/pages/_front.py`` joins them to the picture of README, ``gallery/looks.jpg``.
+``python gallery/pages/_front.py`` joins the pictures to that of README, ``gallery/looks.jpg``.
 """
 
 from __future__ import annotations
 
+import base64
+import re
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import pyvista as pv
 from PIL import Image
 
 import vizlight
+from vizlight import Material, Scene, render
+from vizlight.draw import html
 
 #: Names of pictures, and of the data that they show.
 LOOKS = {
@@ -23,6 +28,10 @@ LOOKS = {
     "earth": "earth_relief.vti",
 }
 SIZE = (600, 400)
+#: The scene: size of its picture, eye, and background, the same on light and on dark pages.
+WIDE, EYE, NIGHT = (1152, 480), (0.42, 1, 0.25), "#12141a"
+#: What the page of the scene tells the page around it, which then shows it in place of the picture.
+READY = "addEventListener('vizlight-ready', () => parent.postMessage('vizlight-ready', '*'));"
 
 
 def write(app):
@@ -30,6 +39,40 @@ def write(app):
     folder = Path(app.srcdir) / "guide" / "pictures" / "front"
     folder.mkdir(parents=True, exist_ok=True)
     _write(folder, SIZE, "jpg")
+    page = Path(app.srcdir) / "_static" / "scenes" / "front.html"
+    page.parent.mkdir(parents=True, exist_ok=True)
+    _divide(page)
+    text = page.read_text("utf-8")
+    still = re.search(r'id="picture"[^>]*base64,([^"]+)', text)[1]
+    (folder / "divided.jpg").write_bytes(base64.b64decode(still))
+    page.write_text(text.replace("</body>", f"<script>{READY}</script>\n</body>"), "utf-8")
+
+
+def _divide(path):
+    """Write the page of winds as PyVista draws them, left, and as a look does, right."""
+    wind, coast = map(vizlight.load_example, (LOOKS["winds"], "coasts.vtp"))
+    look = vizlight.look(wind, size=WIDE, background=NIGHT, key=False)
+    plotter = look.plotter()
+    globe, right = next(iter(plotter.actors.values())), len(plotter.vizlight.shown())
+    plotter.vizlight.add_mesh(
+        wind, scalars="wind", cmap="viridis", scalar_bar_args={"title": "wind"}
+    )
+    left = len(plotter.vizlight.shown())
+    plotter.add_scalar_bar("speed, m/s", mapper=globe.mapper)
+    east, north = np.radians(np.asarray(coast.points, dtype=float)[:, :2].T)
+    ball = np.cos(north) * np.cos(east), np.cos(north) * np.sin(east), np.sin(north)
+    coast.points = 1.001 * np.stack(ball, axis=1)
+    even = Scene(lights=[], material=Material(ambient=1, diffuse=0, specular=0))
+    thin = {"color": "#7d6a52", "line_width": 1.2, "halo": False, "light": "points"}
+    plotter.vizlight.add_mesh(coast, scene=even, **thin)
+    plotter.camera = render.camera_on(wind.bounds, EYE, aspect=WIDE[0] / WIDE[1], zoom=1.7)
+    plotter.enable_anti_aliasing("ssaa")
+    shown = [
+        mesh._replace(frame=1 if i < right else 0 if i < left else None)
+        for i, mesh in enumerate(plotter.vizlight.shown())
+    ]
+    names = ("PyVista | vizlight", ("PyVista", "vizlight"))
+    html.write_page(path, shown, plotter, frames=names)
 
 
 def _write(folder, size, suffix):

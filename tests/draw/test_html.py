@@ -319,6 +319,7 @@ def test_axe_finds_nothing(scheme, opened, tmp_path):
         look = {"viewport": {"width": width, "height": 900}, "color_scheme": scheme}
         page, _ = opened(path, bare=False, bypass_csp=True, **look)
         page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+        page.evaluate("document.body.classList.remove('folded')")  # as it is at first on telephones
         page.get_by_role("button", name="Copy as Python").click()
         for asked in ("dialog", "document"):
             page.evaluate(AXE.read_text("utf-8"))
@@ -365,6 +366,40 @@ def test_light_by_question_is_that_of_the_preset(question, shown):
     page.evaluate("(name) => vizlight.look(name)", question)
     np.testing.assert_allclose(shot(page), shot(expected), atol=1)
     assert page.evaluate("vizlight.page.looks")[question]["key"] == list(QUESTIONS[question].words)
+
+
+def test_keys_of_a_page_are_the_figures_of_pictures(shown):
+    page = shown(winding(), Scene(lights=FAR))
+    read = "() => document.querySelector('canvas[data-ball=key]').toDataURL().split(',')[1]"
+    for question in ("direction", "slope"):
+        page.evaluate("(name) => { vizlight.look(name); vizlight.draw(); }", question)
+        drawn = Image.open(io.BytesIO(base64.b64decode(page.evaluate(read))))
+        wanted = vizlight.presets.key_picture(getattr(presets, question)(), 176).astype(int)
+        # The style of the page turns a figure over, and makes a bar low.
+        drawn = drawn.transpose(Image.Transpose.FLIP_TOP_BOTTOM).resize(wanted.shape[1::-1])
+        got = np.asarray(drawn, dtype=int)
+        assert np.mean((got[..., 3] > 128) != (wanted[..., 3] > 128)) < 0.01
+        inside = (got[..., 3] > 250) & (wanted[..., 3] > 250)
+        assert np.abs(got - wanted)[inside].mean() < 4
+
+
+def test_questions_that_the_data_cannot_answer_are_not_offered(tmp_path):
+    ball = pv.Sphere()
+    lines = pv.lines_from_points([(0, 0, 0), (1, 1, 1)])
+    for mesh, scalars, expected in (
+        (ball, None, ["shape"]), (ball, "z", ["shape", "value"]),
+        (lines, None, ["direction", "slope", "heading", "shape"]),
+    ):  # fmt: skip
+        mesh["z"] = mesh.points[:, 2] if scalars else np.zeros(mesh.n_points)
+        path = vizlight.live_html(mesh, tmp_path / "a.html", scene=Scene(lights=FAR))
+        assert list(scene_in(path)[2]["looks"]) == expected
+
+
+def test_the_panel_is_folded_on_a_telephone_at_first(opened, tmp_path):
+    page, _ = opened(plain_page(tmp_path), bare=False, viewport={"width": 390, "height": 800})
+    assert page.evaluate("vizlight.canvas.clientHeight") > 700
+    page.get_by_label("Show or hide the panel (H)").click()
+    assert page.get_by_role("button", name="Save picture").is_visible()
 
 
 def test_arrays_colour_the_mesh_as_in_the_plotter(shown):
@@ -418,6 +453,69 @@ def test_a_page_starts_at_the_view_of_its_scene(tmp_path):
             expected = view.direction or np.subtract(view.position, mesh.center)
             cosine = toward @ expected / np.linalg.norm(toward) / np.linalg.norm(expected)
             assert cosine > 0.9999
+
+
+def test_loops_of_the_mouse_leave_no_tilt(opened, tmp_path):
+    eye = pv.Camera()
+    # Upright to the axis of the view, as some programs write it.
+    eye.position, eye.focal_point, eye.up = (0.5, -3, 3), (0.5, 0, 0), (0, 1, 1)
+    page, _ = opened(plain_page(tmp_path, camera=eye))
+    first = page.evaluate("vizlight.state.camera")
+    assert first["up"] == [0, 0, 1]
+    for _ in range(4):
+        for step in ("0.4, 0", "0, 0.3", "-0.4, 0", "0, -0.3"):
+            page.evaluate(f"vizlight.orbit({step})")
+    last = page.evaluate("vizlight.state.camera")
+    np.testing.assert_allclose(last["position"], first["position"], atol=1e-9)
+    assert last["up"] == first["up"]
+    # No drag passes the pole, beyond which the horizon would be upside down.
+    page.evaluate("vizlight.orbit(0, 9)")
+    x, y, z = page.evaluate("vizlight.state.camera.position")
+    assert z > 20 * np.hypot(x, y)
+
+
+def halves(picture):
+    """Return the first column in which the colours of the right are, and those of both sides."""
+    row = picture[len(picture) // 4].astype(int)
+    apart = np.abs(row - row[0]).max(axis=1) > 60
+    return int(np.argmax(apart)), row[0], row[-1]
+
+
+def test_a_divider_parts_two_frames(opened, tmp_path):
+    plotter = pv.Plotter(off_screen=True, window_size=(300, 250))
+    even = Scene(lights=[], material=Material(ambient=1, diffuse=0, specular=0))
+    for color in ("red", "blue"):
+        plotter.vizlight.add_mesh(pv.Plane(i_size=4, j_size=4), scene=even, color=color)
+    plotter.view_xy()
+    plotter.camera.zoom(4)
+    shown = [mesh._replace(frame=i) for i, mesh in enumerate(plotter.vizlight.shown())]
+    names = ("Red | blue", ("Red", "blue"))
+    path = html.write_page(tmp_path / "split.html", shown, plotter, frames=names)
+    page, seen = opened(path, bare=False)
+    still = re.search(r'id="picture"[^>]*base64,([^"]+)', path.read_text("utf-8"))[1]
+    for picture in (np.array(Image.open(io.BytesIO(base64.b64decode(still)))), shot(page)):
+        middle, left, right = halves(picture)
+        assert abs(middle - 150) < 4
+        assert left[0] > left[2] + 200
+        assert right[2] > right[0] + 200
+    line = page.get_by_role("slider", name="Red | blue")
+    assert line.get_attribute("aria-valuetext") == "50 % Red"
+    line.focus()
+    page.keyboard.press("ArrowLeft")
+    assert abs(halves(shot(page))[0] - 147) < 4
+    page.mouse.move(147, 60)
+    page.mouse.down()
+    page.mouse.move(60, 60)
+    page.mouse.up()
+    assert abs(halves(shot(page))[0] - 60) < 4
+    before = page.evaluate("vizlight.state.camera.position")
+    page.mouse.move(200, 200)
+    page.mouse.down()
+    page.mouse.move(230, 200)
+    page.mouse.up()
+    assert page.evaluate("vizlight.state.camera.position") != before
+    assert page.locator("#panel").count() == 0
+    assert seen == [path.as_uri()]
 
 
 def test_keys_and_fingers_turn_the_page(opened, tmp_path):
@@ -708,6 +806,8 @@ def test_strokes_of_a_page_move_as_those_of_a_movie(opened, tmp_path):
     plotter.close()
     for share, own, other in zip(shares, movie, movie[::-1], strict=True):
         page.evaluate(f"() => {{ vizlight.meshes[0].move({share}); vizlight.draw(); }}")
+        # The borders are smooth.
+        assert len(np.unique(shot(page)[90:160])) > 3
         # The button is above the strokes. Borders differ by their smoothing, a fifth of the ink.
         seen = shot(page)[90:160]
         apart, moved = (np.mean(np.abs(seen - each[90:160]) > 60) for each in (own, other))

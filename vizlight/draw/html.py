@@ -9,6 +9,7 @@ import html
 import io
 import itertools
 import json
+import re
 import string
 import zlib
 from collections.abc import Mapping
@@ -21,7 +22,7 @@ import pyvista as pv
 from PIL import Image
 
 from vizlight import _check
-from vizlight._questions import QUESTIONS
+from vizlight._questions import QUESTIONS, Question
 from vizlight.draw import backends, dialects, glsl, ground
 from vizlight.draw.keywords import is_cloud
 from vizlight.draw.live import NORMALS, TANGENTS, Fragments, items, matrix_of
@@ -130,7 +131,7 @@ class Page:
             "arrays": self.arrays,
             "maps": {name: _packed(np.asarray(rows)[:, :3], "u1") for name, rows in maps.items()},
             "cmap": next(iter(MAPS)),
-            "looks": _looks(lines=self._lines),
+            "looks": _looks(lines=self._lines, values=bool(self.arrays or self.bars)),
             "fade": 0.0,
             "bars": self.bars,
             "texts2d": _words(self.renderer),
@@ -413,12 +414,12 @@ def _lamp(light: Light, value: list[float], *, at: bool, follows: bool) -> dict[
     }  # fmt: skip
 
 
-def _looks(*, lines: bool) -> dict[str, object]:
+def _looks(*, lines: bool, values: bool) -> dict[str, object]:
     """Return light by question: lamps of the eye, material, and the words of the key."""
     by_name: dict[str, object] = {}
     for name, question in QUESTIONS.items():
-        # Hues of tangents answer nothing on a surface without a field.
-        if question.of_tangents and question.by_hue and not lines:
+        # Light answers nothing about tangents or values that the meshes do not have.
+        if (question.of_tangents and not lines) or (question.key == "colors" and not values):
             continue
         scene: Scene = PRESETS[name]()
         lamps = [
@@ -430,7 +431,8 @@ def _looks(*, lines: bool) -> dict[str, object]:
         words = [] if is_colored else list(question.words)
         by_name[name] = {
             "title": question.title, "says": question.says, "lamps": lamps, "material": material,
-            "key": words, "colored": is_colored, "free": question.of_tangents,
+            "key": words, "form": "ball" if is_colored else question.key, "colored": is_colored,
+            "free": question.of_tangents,
         }  # fmt: skip
     return by_name
 
@@ -763,7 +765,7 @@ def page_text(
     title: str = "",
     panel: bool = True,
     key: bool = True,
-    frames: tuple[str, Sequence[float]] | None = None,
+    frames: tuple[str, Sequence[float] | Sequence[str]] | None = None,
     source: Sequence[str] = (),
     auto: bool = False,
     script: str = "",
@@ -781,8 +783,9 @@ def page_text(
         Title of the page.
     panel, key : bool
         Whether the panel is open at first, and whether the key of a preset's light is shown.
-    frames : (str, sequence of float), optional
-        Name of the numbers of the frames, and the numbers.
+    frames : (str, sequence of float or of str), optional
+        Name of the numbers of the frames, and the numbers. Two names in place of numbers are
+        frames that are seen at once, left and right of a divider, on a page without a panel.
     source : sequence of str
         File, and options of the command that lights it alike.
     auto : bool
@@ -802,7 +805,9 @@ def page_text(
     page = Page(plotter.renderer)
     for each in shown:
         page.add(each)
-    page.add_values(shown)
+    split = frames is not None and isinstance(frames[1][0], str)
+    if not split:
+        page.add_values(shown)  # for the panel
     page.add_bars(plotter, shown)
     if source:
         file, *words = [str(word) for word in source]
@@ -812,10 +817,12 @@ def page_text(
         faces = all(mesh.n_cells and mesh.max_cell_dimensionality > 1 for mesh in meshes)
         plain = faces and not tangents
         page.recipe |= {"file": file, "command": words, "plain": plain}
+    question = _question_of(shown[0].live) if key else None
     content = page.content() | {
         "name": title or stem, "stem": stem, "panel": panel, "frame": 0,
         "frames": None if frames is None else {"label": frames[0], "values": list(frames[1])},
-        "key": _key_words(shown[0].live) if key else None, "auto": auto,
+        "key": None if question is None else list(question.words),
+        "form": None if question is None else question.key, "auto": auto,
     }  # fmt: skip
     text = string.Template(_web("page.html")).substitute(
         title=html.escape(title or "vizlight"),
@@ -824,7 +831,7 @@ def page_text(
         unseen="" if title else ' class="unseen"',
         label=html.escape(title or "Scene", quote=True),
         policy="'self'" if script else "'unsafe-inline'",
-        picture=_picture(plotter),
+        picture=_picture(plotter, shown, split=split),
         # A tag within the text would end the script.
         scene=json.dumps(content, allow_nan=False).replace("<", "\\u003c"),
         script=f'<script src="{script}"></script>' if script else f"<script>{viewer()}</script>",
@@ -837,7 +844,11 @@ def page_text(
 @functools.cache
 def viewer() -> str:
     """Return the script of all pages, without comments and indentation."""
-    parts = [f"const STYLE = {json.dumps(_bare(_web('page.css')))};", *map(_web, SCRIPTS)]
+    # Spaces after marks are for who reads the style.
+    style = (
+        re.sub(r"\s*([{};,>])\s*", r"\1", _web("page.css")).replace(": ", ":").replace(";}", "}")
+    )
+    parts = [f"const STYLE = {json.dumps(style)};", *map(_web, SCRIPTS)]
     text = _bare("\n".join(parts)).replace("</script", "<\\/script")
     return f"'use strict';\n(() => {{\n{text}\n}})();\n"
 
@@ -848,26 +859,44 @@ def _bare(text: str) -> str:
     return "\n".join(line for line in lines if line and not line.startswith("// "))
 
 
-def _picture(plotter: pv.BasePlotter) -> str:
+def _picture(plotter: pv.BasePlotter, shown: Sequence[PageMesh], *, split: bool) -> str:
     """Return an element with the picture of a plotter, empty where nothing draws yet."""
     try:
         backends.choose_backend()
-        seen = plotter.screenshot(None, return_img=True)
+        seen = np.asarray(plotter.screenshot(None, return_img=True))[..., :3]
+        if split:
+            middle = seen.shape[1] // 2
+            left, right = (_picture_of(plotter, shown, frame) for frame in (0, 1))
+            seen = np.hstack([left[:, :middle], right[:, middle:]])
     except (backends.BackendError, AttributeError):
         # A plotter with a window on a screen has no picture before it is shown.
         return ""
     file = io.BytesIO()
-    Image.fromarray(np.asarray(seen)[..., :3]).convert("RGB").save(file, "JPEG", quality=70)
+    Image.fromarray(seen).convert("RGB").save(file, "JPEG", quality=70)
     data = base64.b64encode(file.getvalue()).decode()
     return f'<img id="picture" alt="The scene" src="data:image/jpeg;base64,{data}">'
 
 
-def _key_words(live: Live) -> list[str] | None:
-    """Return the words of the key where the light comes from a preset."""
+def _picture_of(plotter: pv.BasePlotter, shown: Sequence[PageMesh], frame: int) -> Raw:
+    """Return the picture of one frame, without bars, which a page has at its border."""
+    hidden = [each.actor for each in shown if each.frame not in (None, frame)]
+    hidden += plotter.scalar_bars.values()
+    try:
+        for actor in hidden:
+            actor.SetVisibility(False)
+        plotter.render()
+        return np.array(plotter.screenshot(None, return_img=True))[..., :3]
+    finally:
+        for actor in hidden:
+            actor.SetVisibility(True)
+
+
+def _question_of(live: Live) -> Question | None:
+    """Return the question whose key is shown, where the light comes from a preset."""
     if live.scene is None or live.scalars is not None:
         return None
     question = QUESTIONS.get(preset_of(live.scene) or "")
-    return None if question is None or question.key == "colors" else list(question.words)
+    return None if question is None or question.key == "colors" else question
 
 
 def _web(name: str) -> str:

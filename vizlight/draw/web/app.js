@@ -15,8 +15,11 @@ class App {
     Object.assign(this, { page, past: [], future: [], lamp: 0, set: 0, watchers: [], ratio: 1, programs: new Map() });
     this.first = {
       sets: page.lights, materials: page.meshes.map((mesh) => mesh.material), look: '', color: '', cmap: page.cmap, clim: null,
-      frame: page.frame, cut: { axis: -1, at: 0.5, far: false }, free: false, sky: true, fade: page.fade, camera: page.camera, hidden: [], background: '',
+      frame: page.frame, split: 0.5, cut: { axis: -1, at: 0.5, far: false }, free: false, sky: true, fade: page.fade, camera: page.camera, hidden: [], background: '',
     };
+    // Frames with names in place of numbers stand side by side, left and right of a divider.
+    this.isSplit = typeof page.frames?.values[0] === 'string';
+    this.first.camera.up = uprightOf(page.camera);
     this.state = copyOf(this.first);
     this.saved = JSON.stringify(this.state);
     this.canvas = document.getElementById('canvas');
@@ -45,7 +48,7 @@ class App {
     this.tables = Object.create(null);
     await Promise.all(Object.entries(page.maps).map(async ([name, packed]) => { this.tables[name] = await unpack(packed); }));
     this.meshes = await Promise.all(page.meshes.map((given) => Mesh.read(gl, given, texts)));
-    this.balls = [false, true].map((ofDirections) => ballOf(gl, ofDirections));
+    this.keys = Object.fromEntries(FORMS.map((form) => [form, keyOf(gl, form)]));
     this.leader = this.meshes.find((mesh) => mesh.given.live);
     const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
     this.meshes.forEach(({ places }) => {
@@ -123,8 +126,8 @@ class App {
     return this.state.background || (dark ? '#16181d' : background);
   }
 
-  shown(mesh) {
-    return (mesh.given.frame === undefined || mesh.given.frame === this.state.frame) && !this.state.hidden.includes(mesh.name);
+  shown(mesh, frame = this.state.frame) {
+    return (mesh.given.frame === undefined || mesh.given.frame === frame) && !this.state.hidden.includes(mesh.name);
   }
 
   // The axis that is cut, the place of the cut along it, and the side that is left out.
@@ -250,14 +253,24 @@ class App {
       const { numbers, key } = mesh.given.live ? this.lightOf(mesh, view) : { numbers: {}, key: '' };
       mesh.draw({ ...common, ...numbers }, key, view, sorted, ratio);
     };
-    const meshes = this.meshes.filter((mesh) => this.shown(mesh));
-    meshes.filter((m) => m.given.opacity >= 1).forEach((m) => draw(m));
-    gl.enable(gl.BLEND);
-    // What is opaque hides what is translucent, which hides nothing itself.
-    gl.depthMask(false);
-    meshes.filter((m) => m.given.opacity < 1).forEach((m) => draw(m, !this.moving || !this.slow));
-    gl.depthMask(true);
-    gl.disable(gl.BLEND);
+    const layers = (meshes) => {
+      meshes.filter((m) => m.given.opacity >= 1).forEach((m) => draw(m));
+      gl.enable(gl.BLEND);
+      // What is opaque hides what is translucent, which hides nothing itself.
+      gl.depthMask(false);
+      meshes.filter((m) => m.given.opacity < 1).forEach((m) => draw(m, !this.moving || !this.slow));
+      gl.depthMask(true);
+      gl.disable(gl.BLEND);
+    };
+    if (this.isSplit) {
+      const middle = Math.round(state.split * canvas.width);
+      gl.enable(gl.SCISSOR_TEST);
+      [[0, middle], [middle, canvas.width - middle]].forEach(([from, width], frame) => {
+        gl.scissor(from, 0, width, canvas.height);
+        layers(this.meshes.filter((mesh) => this.shown(mesh, frame)));
+      });
+      gl.disable(gl.SCISSOR_TEST);
+    } else layers(this.meshes.filter((mesh) => this.shown(mesh)));
     this.ontriad?.(view);
     if (!this.moving || !this.slow) this.drawBalls(view);
     if (!this.moving) return;
@@ -288,7 +301,7 @@ class App {
     const { given } = this.leader;
     const { numbers } = this.lightOf(this.leader, view);
     const lit = this.lightOfBall(numbers, view);
-    const said = JSON.stringify([lit, this.leader.data, targets.length]);
+    const said = JSON.stringify([lit, this.leader.data, targets.length, this.form]);
     if (said === this.drawn) return;
     this.drawn = said;
     const flat = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
@@ -303,13 +316,19 @@ class App {
     targets.forEach((target) => {
       gl.clear(gl.COLOR_BUFFER_BIT);
       this.leader.program(lit.key, false).use(all);
-      this.balls[target.dataset.ball === 'key' && !given.surface ? 1 : 0].draw();
+      this.keys[target.dataset.ball === 'key' ? this.form : 'ball'].draw();
       const image = new ImageData(BALL, BALL);
       gl.readPixels(0, 0, BALL, BALL, gl.RGBA, gl.UNSIGNED_BYTE, image.data);
       Object.assign(target, { width: BALL, height: BALL });
       target.getContext('2d').putImageData(image, 0, 0); // upside down, which the style turns
     });
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  // The figure of the key, the same as in pictures.
+  get form() {
+    const { page, state: { look }, leader } = this;
+    return (look === '' ? page : page.looks[look])?.form || (leader.given.surface ? 'ball' : 'hemisphere');
   }
 
   // A ball is far from all lamps: those with a place shine from where they stand about the centre.
@@ -359,13 +378,14 @@ class App {
   }
 
   // ---- camera
+  // About the axis that is up and stays so, as far as its ends: who comes back finds the first view.
   orbit(dx, dy) {
     const { camera } = this.state;
+    const up = unit(camera.up);
     const away = minus(camera.position, camera.focal);
-    const right = unit(cross(camera.up, away));
-    const turned = (v) => spun(spun(v, unit(camera.up), -dx), right, -dy);
-    camera.position = plus(camera.focal, turned(away));
-    camera.up = unit(spun(camera.up, right, -dy));
+    const angle = Math.acos(dot(up, unit(away)));
+    const raised = Math.max(0.01, Math.min(Math.PI - 0.01, angle - dy)) - angle;
+    camera.position = plus(camera.focal, spun(spun(away, unit(cross(up, away)), raised), up, -dx));
     this.move();
   }
 
@@ -441,6 +461,8 @@ function steer(app) {
   ['pointerup', 'pointercancel'].forEach((kind) => canvas.addEventListener(kind, end));
   canvas.addEventListener('contextmenu', (e) => e.preventDefault());
   canvas.addEventListener('wheel', (e) => {
+    // A scene without a panel stands within a text, which the wheel scrolls.
+    if (app.isSplit && !e.ctrlKey) return;
     e.preventDefault();
     // By factors, so that as many turns of the wheel back end where it began.
     app.zoom(Math.exp(-e.deltaY / 600));

@@ -34,6 +34,13 @@ function viewOf({ position, focal, up }) {
   return [x[0], y[0], z[0], 0, x[1], y[1], z[1], 0, x[2], y[2], z[2], 0, -dot(x, position), -dot(y, position), -dot(z, position), 1];
 }
 
+// The axis of space that stands upright in a picture, z before others, or else the picture's own.
+function uprightOf({ position, focal, up }) {
+  const right = unit(cross(up, minus(position, focal)));
+  const axes = [[0, 0, 1], [0, 1, 0], [1, 0, 0]].flatMap((axis) => [axis, scaled(axis, -1)]);
+  return axes.find((axis) => Math.abs(dot(axis, right)) < 1e-5 && dot(axis, unit(up)) > 0.1) || up;
+}
+
 // In an upright window the angle and the scale are those from side to side.
 function lens({ angle, parallel, scale }, aspect, near, far) {
   const narrow = Math.min(aspect, 1);
@@ -162,7 +169,7 @@ const CAPSULE_SHAPE = `
   float border = 0.5 * fwidth(away);
   // Where the width changes fast, as in the head of an arrow, ends are straight.
   bool steep = abs(halves.x - halves.y) > 0.2 * at.z && (at.y < 0.0 || at.y > at.z);
-  if (away >= ownHalo || steep) discard;
+  if (away >= max(ownHalo, border) || steep) discard;
   float near = deep.x * (1.0 - 0.75 * clamp(0.5 + 0.5 * away / border, 0.0, 1.0));
   gl_FragDepth = clamp(gl_FragCoord.z + near, 1e-3, 1.0) + clamp((away - border) / max(ownHalo, 1e-3), 0.0, 1.0) * (deep.y - near);`;
 const CAPSULE_GROUND = `
@@ -173,7 +180,7 @@ const CAPSULE_GROUND = `
     float pale = ground < 0.5 ? 0.0 : clamp(1.0 - (ground - dot(ownOut.rgb, luma)) / 0.4, 0.0, 1.0);
     ownOut.rgb *= 1.0 - ownDarker * pale * smoothstep(-2.5, -0.5, away);
     ownOut.rgb = mix(ownOut.rgb, ownGround, smoothstep(-border, border, away));
-  }
+  } else ownOut.a *= 1.0 - smoothstep(-border, border, away);
 }`;
 const FRAGMENT = `#version 300 es
 #define varying in
@@ -441,6 +448,8 @@ class Mesh {
     (this.edges.length ? gl.enable : gl.disable).call(gl, gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1, 1);
     if (this.heights) gl.bindTexture(gl.TEXTURE_2D, this.heights);
+    // Without a halo, pixels at the border of a stroke are covered in part.
+    (this.capsules && !given.halo && given.opacity >= 1 ? gl.enable : gl.disable).call(gl, gl.SAMPLE_ALPHA_TO_COVERAGE);
     const all = { ...numbers, ...given.numbers, ...sizes, ownOpacity: [given.opacity] };
     this.batches.forEach((batch) => {
       const wide = (batch.kind === 'points' ? given.pointSize : given.lineWidth) * ratio;
@@ -454,29 +463,30 @@ class Mesh {
   }
 }
 
-// Half a ball seen along z, wound with lines about y; or one whose points stand for directions of
-// lines, whose surface then faces the eye as far as it can.
-function ballOf(gl, ofDirections) {
+// Half a ball seen along z, wound with lines about y; a disc of lines from its centre, across the view;
+// half a ball of near ends of lines; a bar of lines from across the view to the eye. The surface of
+// lines faces the eye as far as it can.
+const FORMS = ['ball', 'disc', 'hemisphere', 'bar'];
+const HOLE = 0.3; // inner radius of the disc
+function keyOf(gl, form) {
   const [rows, columns] = [24, 64];
-  const [places, ids] = [[0, 0, 1], []];
-  for (let r = 1; r <= rows; r += 1) {
-    for (let c = 0; c < columns; c += 1) {
-      const [away, round] = [(r / rows) * (Math.PI / 2), (c / columns) * 2 * Math.PI];
-      places.push(Math.sin(away) * Math.cos(round), Math.sin(away) * Math.sin(round), Math.cos(away));
-      const [here, next] = [1 + (r - 1) * columns + c, 1 + (r - 1) * columns + ((c + 1) % columns)];
-      if (r === 1) ids.push(0, here, next);
-      else ids.push(here - columns, here, next, here - columns, next, next - columns);
+  const [places, normals, tangents, ids] = [[], [], [], []];
+  const facing = (v) => (v[2] > 0.9999 ? [0, 1, 0] : unit(minus([0, 0, 1], scaled(v, v[2]))));
+  for (let r = 0; r <= rows; r += 1) {
+    for (let c = 0; c <= columns; c += 1) {
+      const round = (c / columns) * 2 * Math.PI;
+      const sine = form === 'disc' ? HOLE + (1 - HOLE) * (r / rows) : Math.sin((r / rows) * (Math.PI / 2));
+      const v = [sine * Math.cos(round), sine * Math.sin(round), Math.sqrt(1 - sine ** 2)];
+      const line = { ball: unit(cross([0, 1, 0], v)), disc: unit([v[0], v[1], 0]), hemisphere: v, bar: [Math.cos(round / 4), 0, Math.sin(round / 4)] }[form];
+      places.push(...(form === 'bar' ? [(2 * c) / columns - 1, (2 * r) / rows - 1, 0] : v));
+      // A normal of the length 2 is not turned to the eye.
+      normals.push(...scaled(form === 'ball' ? v : facing(line), 2));
+      tangents.push(...line);
+      const here = r * (columns + 1) + c;
+      if (r < rows && c < columns) ids.push(here, here + 1, here + columns + 2, here, here + columns + 2, here + columns + 1);
     }
   }
   const batch = new Batch(gl, 'surface', ids.length, Uint32Array.from(ids));
-  const facing = (v) => (Math.abs(v[2]) > 0.9999 ? [0, 1, 0] : unit(minus([0, 0, 1], scaled(v, v[2]))));
-  const [normals, tangents] = [[], []];
-  for (let i = 0; i < places.length; i += 3) {
-    const v = places.slice(i, i + 3);
-    // A normal of the length 2 is not turned to the eye.
-    normals.push(...scaled(ofDirections ? facing(v) : v, 2));
-    tangents.push(...(ofDirections ? v : unit(cross([0, 1, 0], v))));
-  }
   batch.put('ownPlace', Float32Array.from(places), 3);
   batch.put('vizNormalMC', Float32Array.from(normals), 3);
   batch.put('vizTangentMC', Float32Array.from(tangents), 3);

@@ -289,7 +289,8 @@ function legend(app) {
     const { look, color, cmap, clim } = app.state;
     key.hidden = !app.leader || app.leader.data || !(page.looks[look] || (page.key && look === '') || look === '*');
     const said = look === '' ? page.key : page.looks[look]?.key;
-    words.replaceChildren(...(said || [app.leader?.given.surface ? 'the way it faces' : 'lines along each radius']).map(span));
+    words.replaceChildren(...(said || [app.leader?.given.surface ? 'a ball in this light' : 'lines along each radius']).map(span));
+    key.dataset.form = app.leader ? app.form : '';
     key.firstChild.setAttribute('aria-label', `Key: ${words.textContent}`);
     if (page.arrays[color]) {
       const [low, high] = clim || page.arrays[color];
@@ -317,6 +318,23 @@ function frameControl(app) {
   const { row, show } = slider(frames.label, [0, frames.values.length - 1, 1], () => app.state.frame, (frame, done) => app.change({ frame }, done), null, (i) => short(frames.values[i], 4));
   document.getElementById('frames').append(row);
   return show;
+}
+
+// A line between two frames that pointers and keys move.
+function divider(app) {
+  const { label, values } = app.page.frames;
+  const input = make('input', { id: 'divider', type: 'range', max: 1, step: 0.01, 'aria-label': label, oninput: () => app.change({ split: Number(input.value) }, false) });
+  const show = () => {
+    input.value = app.state.split;
+    input.setAttribute('aria-valuetext', `${Math.round(100 * app.state.split)} % ${values[0]}`);
+  };
+  const words = ['left', 'right'].map((side, i) => make('p', { className: `words top ${side}`, textContent: values[i] }));
+  document.getElementById('stage').append(...words, input);
+  document.body.classList.add('split');
+  document.getElementById('panel').remove();
+  app.watchers.push(show);
+  show();
+  legend(app)();
 }
 
 // Strokes that move can be held.
@@ -415,7 +433,7 @@ async function start() {
   sheet.replaceSync(STYLE);
   document.adoptedStyleSheets = [sheet];
   const page = JSON.parse(document.getElementById('scene').textContent);
-  if (!page.panel || (innerWidth < 760 && innerHeight < 500)) document.body.classList.add('folded');
+  if (!page.panel || innerWidth <= 760) document.body.classList.add('folded');
   page.notices.forEach(notice);
   page.texts2d.forEach(([at, text]) => document.getElementById('stage').append(make('p', { className: `words ${at}`, textContent: text })));
   try {
@@ -425,13 +443,13 @@ async function start() {
     app.draw();
     // The picture is seen before the panel is made.
     await new Promise((done) => { requestAnimationFrame(() => setTimeout(done)); });
-    build(app);
+    (app.isSplit ? divider : build)(app);
     steer(app);
     motionControl(app);
     new ResizeObserver(() => { if (app.sized()) app.draw(); }).observe(app.canvas);
     matchMedia('screen and (prefers-color-scheme: dark)').addEventListener('change', () => app.draw());
     addEventListener('beforeprint', () => app.draw());
-    app.ontriad(viewOf(app.state.camera));
+    app.ontriad?.(viewOf(app.state.camera));
     setTimeout(() => app.drawBalls(viewOf(app.state.camera)));
     window.vizlight = app;
     document.body.dataset.ready = String(Math.round(performance.now()));
