@@ -784,6 +784,26 @@ def test_lines_of_a_page_have_the_halos_and_widths_of_the_picture(opened, tmp_pa
     assert np.mean(np.abs(shot(page) - expected).max(axis=2) > 60) < 0.003
 
 
+def test_strokes_behind_the_border_of_their_surface_do_not_stand_out(opened, tmp_path):
+    ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
+    ball["V"] = np.cross((0, 0, 1.0), ball.points)
+    even = Scene(lights=[], material=Material(ambient=1, diffuse=0, specular=0))
+    lines = vizlight.streamlines(ball, even, tangents="V", spacing=0.06, stroke_length=0.3)
+    plotter = pv.Plotter(off_screen=True, window_size=(300, 250))
+    plotter.background_color = "red"
+    plotter.vizlight.add_mesh(ball, scene=even)
+    thick = {"color": "black", "width": "width", "line_width": 4, "halo": False}
+    plotter.vizlight.add_mesh(lines, scene=even, **thick)
+    plotter.view_vector((1, 0.2, 0.6))
+    page, _ = opened(plotter.vizlight.export_html(tmp_path / "strokes.html", key=False))
+    drawn = shot(page)
+    page.evaluate("vizlight.change({ hidden: ['mesh 2'] })")
+    bare = shot(page)
+    outside = (bare == (255, 0, 0)).all(axis=2)
+    assert (np.abs(drawn - bare).max(axis=2) > 100).sum() > 1500
+    assert not (np.abs(drawn - bare).max(axis=2) > 100)[outside].any()
+
+
 def test_strokes_of_a_page_move_as_those_of_a_movie(opened, tmp_path):
     sheet = pv.Plane(i_size=4, j_size=1, i_resolution=40, j_resolution=10)
     sheet["V"] = np.tile([2.0, 0, 0], (sheet.n_points, 1))

@@ -165,6 +165,13 @@ class Page:
         if live.stroke.width is not None:
             shares = live.picked(np.nan_to_num(live.source.mesh.point_data[live.stroke.width]))
             entry["widths"] = _packed(np.clip(255 * shares, 0, 255)[:, np.newaxis], "u1")
+            if "Normals" in live.source.mesh.point_data:
+                # Of the surface on which the strokes lie, from 0 to 255.
+                leans = live.picked(np.asarray(live.source.mesh["Normals"])) @ np.linalg.inv(
+                    matrix_of(actor.GetMatrix())[:3, :3]
+                )
+                leans /= np.maximum(np.linalg.norm(leans, axis=1, keepdims=True), 1e-30)
+                entry["leans"] = _packed(np.rint(127.5 * (leans + 1)), "u1")
             if strokes.PHASE in live.source.mesh.point_data:
                 entry["moving"] = _moving(live)
         if shown.frame is not None:

@@ -3,6 +3,8 @@
 const BALL = 176; // pixels across a lit ball
 const SLOW = 50; // ms for a frame above which fewer samples are drawn while something moves
 const MOST_LAMPS = 4;
+const DARK = matchMedia('screen and (prefers-color-scheme: dark)');
+const byId = (id) => document.getElementById(id);
 const copyOf = (x) => JSON.parse(JSON.stringify(x));
 const short = (x, digits = 3) => String(Number(Number(x).toPrecision(digits)));
 const inDegrees = (x) => Math.round((x * 180) / Math.PI);
@@ -22,7 +24,7 @@ class App {
     this.first.camera.up = uprightOf(page.camera);
     this.state = copyOf(this.first);
     this.saved = JSON.stringify(this.state);
-    this.canvas = document.getElementById('canvas');
+    this.canvas = byId('canvas');
     // The picture is kept after it was shown, for who saves or prints it; without alpha, as else
     // the page would shine through what is translucent.
     const gl = this.canvas.getContext('webgl2', { antialias: true, preserveDrawingBuffer: true, alpha: false });
@@ -122,8 +124,7 @@ class App {
   // A background that nobody chose is dark on dark pages, but not on paper.
   get background() {
     const { auto, background } = this.page;
-    const dark = auto && matchMedia('screen and (prefers-color-scheme: dark)').matches;
-    return this.state.background || (dark ? '#16181d' : background);
+    return this.state.background || (auto && DARK.matches ? '#16181d' : background);
   }
 
   shown(mesh, frame = this.state.frame) {
@@ -435,12 +436,12 @@ function steer(app) {
     const [a, b] = [...held.values()];
     return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, apart: Math.hypot(a.x - b.x, a.y - b.y) };
   };
-  canvas.addEventListener('pointerdown', (e) => {
+  canvas.onpointerdown = (e) => {
     // A drag goes on where the pointer leaves the picture.
     canvas.setPointerCapture(e.pointerId);
     held.set(e.pointerId, { x: e.clientX, y: e.clientY });
-  });
-  canvas.addEventListener('pointermove', (e) => {
+  };
+  canvas.onpointermove = (e) => {
     const last = held.get(e.pointerId);
     if (!last) return;
     const before = held.size === 2 ? spread() : null;
@@ -452,14 +453,15 @@ function steer(app) {
       app.pan(after.x - before.x, after.y - before.y);
       app.zoom(after.apart / (before.apart || 1));
     } else if (e.shiftKey || e.buttons & 6) app.pan(dx, dy);
-    else app.orbit((dx * 4) / canvas.clientHeight, (dy * 4) / canvas.clientHeight);
-  });
-  const end = (e) => {
+    // In a text, fingers that move up and down scroll it.
+    else app.orbit((dx * 4) / canvas.clientHeight, app.isSplit && e.pointerType === 'touch' ? 0 : (dy * 4) / canvas.clientHeight);
+  };
+  canvas.onpointerup = (e) => {
     held.delete(e.pointerId);
     app.change({});
   };
-  ['pointerup', 'pointercancel'].forEach((kind) => canvas.addEventListener(kind, end));
-  canvas.addEventListener('contextmenu', (e) => e.preventDefault());
+  canvas.onpointercancel = canvas.onpointerup;
+  canvas.oncontextmenu = (e) => e.preventDefault();
   canvas.addEventListener('wheel', (e) => {
     // A scene without a panel stands within a text, which the wheel scrolls.
     if (app.isSplit && !e.ctrlKey) return;
@@ -475,10 +477,10 @@ function steer(app) {
     ArrowLeft: () => app.orbit(-step, 0), ArrowRight: () => app.orbit(step, 0), ArrowUp: () => app.orbit(0, -step), ArrowDown: () => app.orbit(0, step),
     '+': () => app.zoom(1.1), '=': () => app.zoom(1.1), '-': () => app.zoom(1 / 1.1),
   };
-  canvas.addEventListener('keydown', (e) => {
+  canvas.onkeydown = (e) => {
     if (!acts[e.key] || e.ctrlKey || e.metaKey || e.altKey) return;
     e.preventDefault();
     acts[e.key]();
     app.change({});
-  });
+  };
 }

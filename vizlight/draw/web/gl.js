@@ -148,7 +148,7 @@ const CAPSULE = `
   vec2 span = (b.xy / b.w - a.xy / a.w) * ownSize * 0.5;
   vec2 way = dot(span, span) > 1e-12 ? normalize(span) : vec2(1.0, 0.0);
   bool last = gl_VertexID > 1; float flank = float(gl_VertexID % 2) * 2.0 - 1.0; float w = gl_Position.w;
-  vec2 halves = 0.5 * ownWide * vec2(ownShareA, ownShareB);
+  vec2 halves = 0.5 * ownWide * vec2(ownShareA * turned(ownLeanA, ownPlaceA), ownShareB * turned(ownLeanB, ownPlaceB));
   float reach = (last ? halves.y : halves.x) + ownHalo + 1.0;
   ownAt = w * vec3(flank * reach, last ? length(span) + reach : -reach, length(span));
   ownHalves = w * halves;
@@ -161,7 +161,12 @@ const CAPSULE = `
   vec2 moved = vec2(focus > 0.0 ? min(nearer, 0.5 * w) : nearer, -ownDepth * nearer);
   ownDeep = 0.5 * w * ((gl_Position.z + slope * moved) / (w - focus * moved) - gl_Position.z / w);
   if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
-const CAPSULE_VERTEX = 'uniform float ownHalo; uniform float ownDepth; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;\nin float ownShareA; in float ownShareB;';
+const CAPSULE_VERTEX = 'uniform float ownHalo; uniform float ownDepth; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;\nin float ownShareA; in float ownShareB; in vec3 ownLeanA; in vec3 ownLeanB;' + `
+float turned(vec3 lean, vec3 at) {
+  if (lean == vec3(0.0)) return 1.0;
+  vec3 eye = MCPCMatrix[2][3] == 0.0 ? vec3(0.0, 0.0, 1.0) : normalize((MCVCMatrix * vec4(at, 1.0)).xyz);
+  return smoothstep(0.05, 0.3, abs(dot(mat3(MCVCMatrix) * (lean * 2.0 - 1.0), eye)));
+}\n`;
 const CAPSULE_FRAGMENT = 'uniform float ownHalo; uniform float ownDarker; uniform vec3 ownGround; varying vec3 ownAt; varying vec2 ownHalves; varying vec2 ownDeep;';
 const CAPSULE_SHAPE = `
   vec3 at = ownAt * gl_FragCoord.w; vec2 halves = ownHalves * gl_FragCoord.w; vec2 deep = ownDeep * gl_FragCoord.w;
@@ -203,7 +208,7 @@ const UNLIT = [
   ['Fragment', '//VTK::Normal::Dec', 'varying vec3 vizPVSOutput;'],
   ['Fragment', '//VTK::Light::Impl', 'ownOut = vec4(diffuseColor, opacity);'],
 ];
-const SLOTS = { ownPlace: 0, ownColor: 2, vizNormalMC: 4, vizTangentMC: 6, ownGap: 8, ownShare: 9 };
+const SLOTS = { ownPlace: 0, ownColor: 2, vizNormalMC: 4, vizTangentMC: 6, ownGap: 8, ownShare: 9, ownLean: 11 };
 
 class Program {
   constructor(gl, text, strokes, capsules) {
@@ -267,7 +272,6 @@ class Batch {
       gl.bindVertexArray(this.state);
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
       gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, order, gl.DYNAMIC_DRAW);
-      gl.bindVertexArray(null);
     }
   }
 
@@ -287,10 +291,9 @@ class Batch {
       gl.enableVertexAttribArray(at + end);
       // Colours in bytes become shares from 0 to 1; directions stay whole, and the program scales
       // them.
-      gl.vertexAttribPointer(at + end, width, type, whole && (name === 'ownColor' || name === 'ownShare'), stride, end * stride);
+      gl.vertexAttribPointer(at + end, width, type, whole && /Color|Share|Lean/.test(name), stride, end * stride);
       gl.vertexAttribDivisor(at + end, this.kind === 'strokes' ? 1 : 0);
     });
-    gl.bindVertexArray(null);
   }
 
   // One colour for all.
@@ -298,7 +301,6 @@ class Batch {
     const { gl } = this;
     gl.bindVertexArray(this.state);
     [2, 3].forEach((at) => gl.disableVertexAttribArray(at));
-    gl.bindVertexArray(null);
     this.color = color;
   }
 
@@ -335,7 +337,7 @@ const MOST_SORTED = 3e5;
 class Mesh {
   static async read(gl, given, texts) {
     const mesh = Object.assign(new Mesh(), { gl, given, texts, name: given.name, programs: new Map(), batches: [], edges: [], values: Object.create(null) });
-    const keys = ['normals', 'tangents', 'colors', 'widths', 'verts', 'lines', 'polys', 'strips'].filter((k) => given[k]);
+    const keys = ['normals', 'tangents', 'colors', 'widths', 'leans', 'verts', 'lines', 'polys', 'strips'].filter((k) => given[k]);
     const found = Object.fromEntries(await Promise.all(keys.map(async (k) => [k, await unpack(given[k])])));
     mesh.places = await unpackPlaces(given.points);
     if (given.field) {
@@ -381,6 +383,8 @@ class Mesh {
     if (found.tangents) batch.put('vizTangentMC', gathered(found.tangents, from, 3), 3);
     // All of the width where the points have none of their own.
     if (kind === 'strokes' && this.capsules && !edge) batch.put('ownShare', gathered(found.widths || new Uint8Array(this.places.length / 3).fill(255), from, 1), 1);
+    // Strokes end where their surface turns away, and none behind its border stands out from it.
+    if (kind === 'strokes' && found.leans) batch.put('ownLean', gathered(found.leans, from, 3), 3);
     if (kind === 'strokes') batch.put('ownGap', Uint8Array.from(owners, (cell, i) => Number(cell !== owners[i + 1])), 1);
     batch.points = from;
     batch.from = this.given.ofCells ? owners : from;

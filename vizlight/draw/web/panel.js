@@ -42,11 +42,11 @@ function slider(label, [low, high, step], get, set, first, says = short) {
     input.setAttribute('aria-valuetext', number.textContent);
   };
   // While it is dragged nothing is kept for undo: the whole drag is one step.
-  input.addEventListener('input', () => {
+  input.oninput = () => {
     set(Number(input.value), false);
     show();
-  });
-  input.addEventListener('change', () => set(Number(input.value), true));
+  };
+  input.onchange = () => set(Number(input.value), true);
   if (first) input.addEventListener('dblclick', () => set(first(), true));
   return { row: make('label', { className: 'row' }, span(label), input, number), show };
 }
@@ -94,17 +94,17 @@ function lampPad(app) {
     // The whole drag is one step to undo, which its end commits.
     app.change({}, false);
   };
-  pad.addEventListener('pointerdown', (e) => {
+  pad.onpointerdown = (e) => {
     if (e.button || !app.lamps.length) return;
     if (dots.includes(e.target)) app.lamp = dots.indexOf(e.target);
     e.preventDefault();
     pad.setPointerCapture(e.pointerId);
     drag(e);
     dots[app.lamp].focus({ preventScroll: true });
-  });
-  pad.addEventListener('pointermove', (e) => { if (pad.hasPointerCapture(e.pointerId)) drag(e); });
-  pad.addEventListener('lostpointercapture', () => app.change({}));
-  pad.addEventListener('keydown', (e) => {
+  };
+  pad.onpointermove = (e) => { if (pad.hasPointerCapture(e.pointerId)) drag(e); };
+  pad.onlostpointercapture = () => app.change({});
+  pad.onkeydown = (e) => {
     const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key];
     const i = dots.indexOf(e.target);
     if (!turns || i < 0) return;
@@ -113,7 +113,7 @@ function lampPad(app) {
     const v = app.seen(app.lamps[i], viewOf(app.state.camera));
     app.put(app.lamps[i], spun(spun(v, [0, 1, 0], turns[0] * by), [1, 0, 0], -turns[1] * by));
     app.change({});
-  });
+  };
   const choose = (i) => {
     if (app.lamp === i) return;
     app.lamp = i;
@@ -283,7 +283,7 @@ function legend(app) {
   const words = make('figcaption');
   const key = make('figure', { className: 'key' }, make('canvas', { 'data-ball': 'key', role: 'img' }), words);
   const bars = make('div', { className: 'bars' });
-  document.getElementById('legend').append(key, bars);
+  byId('legend').append(key, bars);
   const own = page.bars.map(({ title, colors, numbers }) => bar(title, `linear-gradient(to right, ${colors.join(', ')})`, numbers));
   return () => {
     const { look, color, cmap, clim } = app.state;
@@ -301,7 +301,7 @@ function legend(app) {
 
 function triad(app) {
   const svg = drawing('-32 -32 64 64', ...AXES.flatMap((name) => [['line', { 'data-axis': name }], ['text', {}, name]]));
-  document.getElementById('triad').append(svg);
+  byId('triad').append(svg);
   const parts = [...svg.children];
   app.ontriad = (view) => AXES.forEach((_, i) => {
     const [x, y] = [view[4 * i] * 20, -view[4 * i + 1] * 20];
@@ -316,7 +316,7 @@ function frameControl(app) {
   const { frames } = app.page;
   if (!frames) return () => {};
   const { row, show } = slider(frames.label, [0, frames.values.length - 1, 1], () => app.state.frame, (frame, done) => app.change({ frame }, done), null, (i) => short(frames.values[i], 4));
-  document.getElementById('frames').append(row);
+  byId('frames').append(row);
   return show;
 }
 
@@ -329,9 +329,9 @@ function divider(app) {
     input.setAttribute('aria-valuetext', `${Math.round(100 * app.state.split)} % ${values[0]}`);
   };
   const words = ['left', 'right'].map((side, i) => make('p', { className: `words top ${side}`, textContent: values[i] }));
-  document.getElementById('stage').append(...words, input);
+  byId('stage').append(...words, input);
   document.body.classList.add('split');
-  document.getElementById('panel').remove();
+  byId('panel').remove();
   app.watchers.push(show);
   show();
   legend(app)();
@@ -345,7 +345,7 @@ function motionControl(app) {
     app.play(on);
     button.textContent = on ? 'Hold' : 'Move';
   };
-  document.getElementById('frames').append(button);
+  byId('frames').append(button);
   play(!matchMedia('(prefers-reduced-motion: reduce)').matches);
 }
 
@@ -372,7 +372,7 @@ function copies(app) {
 
 function build(app) {
   const { page } = app;
-  const panel = document.getElementById('panel');
+  const panel = byId('panel');
   const fold = () => {
     const folded = document.body.classList.toggle('folded');
     folder.setAttribute('aria-expanded', String(!folded));
@@ -426,20 +426,20 @@ function build(app) {
   });
 }
 
-const notice = (textContent) => document.getElementById('notice').append(make('p', { role: 'alert', textContent }));
+const notice = (textContent) => byId('notice').append(make('p', { role: 'alert', textContent }));
 
 async function start() {
   const sheet = new CSSStyleSheet(); // a strict policy allows it, unlike an element of style
   sheet.replaceSync(STYLE);
   document.adoptedStyleSheets = [sheet];
-  const page = JSON.parse(document.getElementById('scene').textContent);
+  const page = JSON.parse(byId('scene').textContent);
   if (!page.panel || innerWidth <= 760) document.body.classList.add('folded');
   page.notices.forEach(notice);
-  page.texts2d.forEach(([at, text]) => document.getElementById('stage').append(make('p', { className: `words ${at}`, textContent: text })));
+  page.texts2d.forEach(([at, text]) => byId('stage').append(make('p', { className: `words ${at}`, textContent: text })));
   try {
     const app = new App(page);
     await app.load();
-    document.getElementById('picture')?.remove();
+    byId('picture')?.remove();
     app.draw();
     // The picture is seen before the panel is made.
     await new Promise((done) => { requestAnimationFrame(() => setTimeout(done)); });
@@ -447,7 +447,7 @@ async function start() {
     steer(app);
     motionControl(app);
     new ResizeObserver(() => { if (app.sized()) app.draw(); }).observe(app.canvas);
-    matchMedia('screen and (prefers-color-scheme: dark)').addEventListener('change', () => app.draw());
+    DARK.onchange = () => app.draw();
     addEventListener('beforeprint', () => app.draw());
     app.ontriad?.(viewOf(app.state.camera));
     setTimeout(() => app.drawBalls(viewOf(app.state.camera)));
@@ -456,7 +456,7 @@ async function start() {
     dispatchEvent(new Event('vizlight-ready'));
   } catch (error) {
     // The picture that Python drew stays in place of the scene.
-    document.getElementById('panel').remove();
+    byId('panel').remove();
     document.body.classList.add('folded');
     notice(`The scene cannot be turned: ${error.message}`);
     // Without WebGL 2 the notice says all; any other fault is for the console too.
