@@ -200,7 +200,7 @@ CASES = [
 @pytest.mark.opengl
 @pytest.mark.parametrize(("place", "kind", "name"), CASES, ids=lambda x: getattr(x, "__name__", x))
 def test_a_field_has_an_effect(place, kind, name, tmp_path, monkeypatch):
-    monkeypatch.setattr(html, "_picture", lambda _: "")
+    monkeypatch.setattr(html, "_picture", lambda *_, **__: "")
     ignored = (place.__name__, name) in WITHOUT
     if ignored and place in WRITERS:
         return
