@@ -262,7 +262,7 @@ def test_axe_finds_nothing(chromium):
 def test_the_first_page_is_light(chromium):
     with chromium.new_context() as context:
         page, read_files, _ = visit(context, "index")
-        page.wait_for_load_state("networkidle")
+        page.wait_for_selector(".divided iframe.ready")
         paths = {unquote(urlsplit(url).path) for url in read_files if url.startswith("file:")}
         # The scene comes after the page, in place of a picture.
         assert [Path(path).name for path in paths if "/scenes/" in path] == ["front.html"]
