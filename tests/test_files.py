@@ -29,6 +29,16 @@ def volume():
     return grid
 
 
+def test_names_of_arrays_are_one_line(tmp_path):
+    # VTK takes a whole line of a cube, with its end.
+    head = "Made up\n Density of helium \n1 0 0 0\n2 1 0 0\n2 0 1 0\n2 0 0 1\n2 2 0 0 0\n"
+    path = tmp_path / "a.cube"
+    path.write_text(head + "1 2\n3 4\n5 6\n7 8\n")
+    mesh = files.read(path)
+    assert mesh.array_names == [mesh.active_scalars_name] == ["Density of helium"]
+    assert sorted(mesh["Density of helium"]) == [1, 2, 3, 4, 5, 6, 7, 8]
+
+
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
@@ -41,6 +51,8 @@ def volume():
         ("g.ex2", b"x", ""),
         ("h.vtp", b"", ""),
         ("i.dwg", b"x", "no reader takes '.dwg' files; convert it to"),
+        ("i.mol2", b"x", "obabel 'i.mol2' -O 'i.pdb'"),
+        ("i.csv", b"x,y,z", r"mesh = pyvista.PolyData\(rows of x, y, z\)"),
         ("j.stp", b"x", "gmsh -2 -clcurv 20 'j.stp' -o 'j.stl'"),
         ("j.dae", b"x", "no reader takes '.dae' files; convert it to"),
         ("k.gz", b"x", "no reader takes '.gz' files; unpack it first"),

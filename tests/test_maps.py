@@ -102,7 +102,9 @@ def test_bands_have_a_step_at_each_level_and_black_lines_are_seen_on_them():
     assert (table.scalar_range, table.nan_color.hex_rgb) == ((0.0, 3.0), maps.MISSING)
 
 
-@pytest.mark.parametrize(("limits", "middle"), [((-2.0, 2.2), 0.0), ((-1.0, 3.0), 1.0)])
+@pytest.mark.parametrize(
+    ("limits", "middle"), [((-2.0, 2.2), 0.0), ((-1.4, 3.0), 0.0), ((-1.0, 3.0), 1.0)]
+)
 def test_bands_of_two_sides_have_their_middle_at_zero(limits, middle):
     table = maps.bands(np.linspace(*limits, 40), limits, "RdBu_r")
     values = limits[0] + np.ptp(limits) * (np.arange(table.n_values) + 0.5) / table.n_values

@@ -126,6 +126,9 @@ DRAFTS, FRESH, ABANDONED = ".vizlight-file-", ".vizlight-new-", 60.0
 
 #: Files of CAD, whose surfaces have no points.
 _SHAPES = (".step", ".stp", ".iges", ".igs", ".brep")
+#: Molecules and tables that no reader takes.
+_MOLECULES = (".mol", ".mol2", ".sdf", ".cif", ".gro", ".pqr", ".fchk", ".molden")
+_TABLES = (".csv", ".tsv", ".txt", ".xlsx", ".parquet", ".npy", ".npz")
 
 
 class FileError(ValueError):
@@ -418,6 +421,7 @@ def _whole(
         notes += [note] if (note := joined.note()) else []
     if isinstance(mesh, pv.DataSet):
         normals.drop_empty(mesh)
+        _name_in_one_line(mesh)
         notes += [note] if (note := _rounded(mesh)) else []
     # These formats may have points for each face or colour; an overlay has a row for each point,
     # and keeps them apart.
@@ -445,6 +449,14 @@ def _whole(
     if suffix in SOUPS and isinstance(mesh, pv.PolyData):
         normals.keep_normals(mesh)
     return mesh
+
+
+def _name_in_one_line(mesh: pv.DataSet) -> None:
+    """Give arrays whose names begin or end with a space, or break, names that can be typed."""
+    for name in (*mesh.point_data, *mesh.cell_data):
+        line = " ".join(name.split())
+        if line and line not in mesh.array_names and (name.strip() != name or "\n" in name):
+            mesh.rename_array(name, line)
 
 
 def _as_bytes(colors: Raw) -> Raw:
@@ -583,6 +595,11 @@ def _by_package(path: Path) -> pv.DataObject:
         way += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
         if path.suffix.lower() in (*_UNPACK, ".zip"):
             way = "unpack it first"
+        if path.suffix.lower() in _MOLECULES:
+            way = f"Open Babel makes a .pdb of it: obabel '{path.name}' -O '{path.stem}.pdb'"
+        if path.suffix.lower() in _TABLES:
+            way = "read its columns by NumPy or pandas, and look at a mesh of them: "
+            way += "mesh = pyvista.PolyData(rows of x, y, z), mesh['name'] = values"
         if path.suffix.lower() == ".geo":
             way = f"gmsh makes a mesh of it: gmsh -3 -format msh2 '{path.name}'"
         if path.suffix.lower() in _SHAPES:

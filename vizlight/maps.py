@@ -173,7 +173,7 @@ colormaps.register(_AMOUNTS, force=True)
 _FINE = 1024
 #: Share of the larger of the ends below and above 0 from which on the smaller makes a map of two
 #: sides.
-_TWO_SIDED = 0.6
+_TWO_SIDED = 0.4
 
 
 def bands(
@@ -193,7 +193,7 @@ def bands(
         Values at which the colour changes.
     limits : (float, float)
         Values at the ends of the colours, which are levels too. Where they are on both sides of 0,
-        and the smaller is at least 0.6 of the larger, the middle of the map is at 0.
+        and the smaller is at least 0.4 of the larger, the middle of the map is at 0.
     cmap : str, default: "vizlight.bands"
         Colour map; violet over pale yellow to crimson by default, on which black lines are seen.
     logarithmic : bool, default: False

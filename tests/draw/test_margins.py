@@ -83,6 +83,13 @@ def test_the_unit_of_a_title_stands_apart(title, parts):
     assert margins.parted(title) == parts
 
 
+def test_words_of_a_key_take_few_lines():
+    key = margins.MarginKey(presets.key(presets.shape()), 0.15, (0, 0, 0), lying=False)
+    # Of a picture of 1200 by 800 pixels.
+    key.fit(800, margins.LETTERS * 800, 120, 0, alone=True)
+    assert key._lines == ["the way", "it faces"]
+
+
 def test_words_of_a_bar_that_do_not_fit_are_left_out_evenly():
     places = [0.1 * i for i in range(11)]
     assert all(margins._thinned(places, 0.0, 11))

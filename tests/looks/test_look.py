@@ -225,6 +225,7 @@ def test_options_win_over_the_rule():
         (pv.PolyData(), {}, ValueError, "data: expected a mesh with points"),
         (pv.PolyData([[0.0, 0, 1e150]]), {}, ValueError, r"data: expected points within 1e\+100"),
         (3, {}, TypeError, "data: expected a PyVista mesh"),
+        (np.zeros((4, 3)), {}, TypeError, r"; take pyvista.PolyData\(rows of x, y, z\) of points"),
         ("none.vtp", {}, FileError, "no such file"),
         (ball(p=lambda x, y, z: x), {"array": "q"}, ValueError, "array: expected the name of an"),
         (ball(p=lambda x, y, z: x), {"question": "direction"}, ValueError, "vectors for 'directi"),

@@ -6,6 +6,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight.looks.recipes import volumes
+from vizlight.mesh import meaning
 
 
 def volume(noise=0.0, count=24):
@@ -24,6 +25,14 @@ def test_a_second_array_is_shown_on_the_isosurface_where_it_changes_along_it():
     assert "colours" not in look.summary
     grid["x"] = grid.points[:, 0]
     assert "in the colours of x" in vizlight.look(grid, array="T").summary
+
+
+def test_the_title_of_an_isosurface_has_the_words_and_the_unit_of_its_file():
+    grid = volume()
+    words = {"long_name": "air_temperature", "units": "K"}
+    meaning.attach(grid, meaning.Meaning(arrays={"T": words}))
+    (key,) = vizlight.look(grid, "shape", contour="T", level=0.5).drawing.keys
+    assert key["title"] == "Air temperature = 0.5 K"
 
 
 def test_slices_are_named_so(monkeypatch):

@@ -197,6 +197,8 @@ def test_a_volume_is_where_its_affine_says(signs, axes, tmp_path):
     for ijk in np.ndindex(values.shape):
         place = (affine @ [*ijk, 1])[:3]
         assert mesh["NIFTI"][mesh.find_closest_point(place)] == values[ijk]
+        # Pictures have the name of the file.
+        assert meaning.of(mesh).arrays == {"NIFTI": {"long_name": "v"}}
         np.testing.assert_allclose(mesh.points[mesh.find_closest_point(place)], place, atol=1e-4)
 
 

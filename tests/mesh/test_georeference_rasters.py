@@ -47,7 +47,8 @@ def test_every_pixel_has_its_height_and_its_place(dtype, options, tmp_path):
     expected = heights[row.astype(int), column.astype(int)].astype(float)
     if "nodata" in options:
         expected[expected == 7] = np.nan
-    np.testing.assert_array_equal(mesh["elevation"], expected)
+    # Bytes are the numbers of a picture.
+    np.testing.assert_array_equal(mesh["a" if dtype == "uint8" else "elevation"], expected)
     assert mesh.field_data["unit"][0] == "metre"
     assert CRS.from_wkt(mesh.field_data["crs"][0]).to_epsg() == 32633
 
@@ -126,6 +127,19 @@ def test_pixels_without_a_place_have_no_unit_of_one(tmp_path):
     with rasterio.open(path, "w", driver="GTiff", **size) as file:
         file.write(np.arange(20, dtype=np.uint8).reshape(1, 4, 5))
     assert "unit" not in vizlight.read(path).field_data
+
+
+@pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
+def test_a_picture_of_a_camera_is_no_relief(tmp_path):
+    rows = HEIGHTS.astype(np.uint16)[None]
+    shown = {}
+    for name, options in (("cells", {"transform": None, "crs": None}), ("ground", {})):
+        look = vizlight.look(written(tmp_path / f"{name}.tif", rows, **options))
+        shown[name] = (look.question, look.notes[0].partition(",")[0])
+    assert shown == {
+        "cells": ("none", "x to the right"),
+        "ground": ("relief", "x east in metre by the reference system"),
+    }
 
 
 def test_a_band_beside_colours_has_its_own_unit(tmp_path):

@@ -349,7 +349,12 @@ class MarginKey:
         # Most words are narrower than their number of wide letters: one is not broken for a few.
         columns = max(columns, min(longest, int(1.4 * columns)))
         columns = len(head) if len(head) <= SHORT * columns else columns
-        self._lines = [line for part in head.splitlines() for line in wrapped(part, columns)]
+        # Fewer lines of a little more letters, rather than a line of a short word.
+        tries = [
+            [line for part in head.splitlines() for line in wrapped(part, most)]
+            for most in range(columns, int(1.2 * columns) + 1)
+        ]
+        self._lines = min(tries, key=len)
         words = LINE * letters * len(self._lines) + (0.5 * letters if self._lines else 0)
         if not self._marks:
             return min(2 * self._half, width), 2 * self._half + words

@@ -562,7 +562,13 @@ def read_steps(data: object, wishes: Wishes) -> list[Step]:
         mesh = blocks.one_grid(mesh)
     if not isinstance(mesh, pv.DataSet):
         expected = "a PyVista mesh, a path or an xarray object"
-        raise TypeError(message("data", expected, _check.describe(data)))
+        # Of NumPy, pandas, PyTorch and others.
+        remedy = (
+            "take pyvista.PolyData(rows of x, y, z) of points, pyvista.wrap(array) of a volume, "
+            "pyvista.StructuredGrid(x, y, z) of a surface; then mesh['name'] = values"
+        )
+        remedy = remedy if hasattr(data, "__array__") else ""
+        raise TypeError(message("data", expected, _check.describe(data), remedy))
     if keywords:
         name, value = next(iter(keywords.items()))
         expected = "no such option beside a mesh, which is read already"

@@ -223,12 +223,15 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     grid = _of_affine(affine, counts)
     kind = np.float32 if rows.dtype == np.float16 else rows.dtype.newbyteorder("=")
     flat = np.ascontiguousarray(rows, dtype=kind).reshape(-1, *rows.shape[3:], order="F")
-    grid.point_data[FORMATS.get(path.suffix.lower(), "NIFTI")] = flat
+    name = FORMATS.get(path.suffix.lower(), "NIFTI")
+    grid.point_data[name] = flat
     grid.field_data[UNIT] = ["millimetre"]
     said = meaning.Meaning(axes=[*meaning.ANATOMY])
     said.axes[-1] += (
         f", in mm by the affine of the header (stored {''.join(nibabel.aff2axcodes(image.affine))})"
     )
+    # The name of a format is no title.
+    said.add_array(name, {"long_name": path.name.partition(".")[0]})
     meaning.attach(grid, said)
     return grid if steps < 2 else series.marked(grid, times, index)
 

@@ -343,9 +343,9 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
 
     A band is a point array of its description, or ``elevation`` where it is the only one, else
     ``band_1``, ``band_2``, ...; red, green and blue are ``rgb``. A single band that can be no
-    heights, since its unit is no length or it has a few whole numbers, is named like its file. What
-    the file marks as missing is NaN. The field data have its reference system as ``crs``, and its
-    unit.
+    heights is named like its file: its unit is no length, it has a few whole numbers, or it is a
+    gray picture, of bytes, or of numbers without a sign and a place. What the file marks as missing
+    is NaN. The field data have its reference system as ``crs``, and its unit.
 
     Parameters
     ----------
@@ -376,7 +376,9 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
             grid, turned = _grid(file)
             # A picture with a model of its camera has a system, but its pixels have no place.
             crs = None if file.transform.is_identity else file.crs
-    words, said = [], meaning.Meaning(axes=["x east", "y north"])
+            on_page = _has_no_place(file)
+            axes = ["x to the right", "y up the page"] if on_page else ["x east", "y north"]
+    words, said = [], meaning.Meaning(axes=axes)
     for name, rows in arrays.items():
         # Heights without a unit on a map are taken for metres, as lengths are.
         metres = "m" if name == "elevation" and crs is not None else None
@@ -436,7 +438,7 @@ def _stack(file: Foreign, path: Path) -> pv.ImageData | None:
     # They are listed in the order of the alphabet, by names such as GTIFF_DIR:10:path.
     listed = file.subdatasets if file.driver == "GTiff" else ()
     names = sorted(listed, key=lambda name: int(name.split(":")[1]))
-    if len(names) < 2 or not file.transform.is_identity or file.crs is not None:
+    if len(names) < 2 or not _has_no_place(file):
         return None
     pages: list[Raw] = []
     for name in names:
@@ -475,13 +477,15 @@ def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str]]:
             continue
         rows = _band(file, i)
         name = file.descriptions[i] or file.tags(i + 1).get("NETCDF_VARNAME") or f"band_{i + 1}"
+        unit = _unit(file, i)
         if count == 1 and name == "band_1":
-            unit = _unit(file, i)
+            # What a camera counts has the unit of no length.
+            unit = unit or ("1" if _is_picture(file) else "")
             is_length = not unit or meaning.metres(unit) is not None
             name = "elevation" if is_length and not _of_classes(rows) else stem
         # Two bands may have one description.
         name = f"{name}_{i + 1}" if name in found else name
-        found[name], units[name] = rows, _unit(file, i)
+        found[name], units[name] = rows, unit
     if not found:
         raise ValueError("no band of numbers that are not complex")
     kinds = [kind.name for kind in file.colorinterp[:3]]
@@ -497,6 +501,18 @@ def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str]]:
 def _unit(file: Foreign, i: int) -> str:
     """Return the unit of a band, empty without one."""
     return str(file.units[i] or file.tags(i + 1).get("units", ""))
+
+
+def _is_picture(file: Foreign) -> bool:
+    """Return whether the first band is in the numbers of a camera, which heights seldom are in."""
+    kind = file.dtypes[0]
+    as_stored = file.scales[0] == 1 and file.offsets[0] == 0
+    return as_stored and (kind == "uint8" or (kind == "uint16" and _has_no_place(file)))
+
+
+def _has_no_place(file: Foreign) -> bool:
+    """Return whether the pixels of a file have no place on the ground."""
+    return bool(file.transform.is_identity) and file.crs is None
 
 
 def _of_classes(rows: Raw) -> bool:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from vizlight.draw.margins import parted
 from vizlight.filters.fur import LENGTH
 from vizlight.looks import levels
 from vizlight.looks.contents import Contents, kinds_of
@@ -18,6 +19,7 @@ from vizlight.looks.recipes.drawing import (
     Layer,
     colors_of,
     colors_of_kinds,
+    titled,
     unlit,
 )
 from vizlight.looks.steps import Step
@@ -108,7 +110,8 @@ def surface(case: Case) -> Drawing:
     drawn = {"scene": scene, **case.wishes.drawn(light)}
     key: Keywords = {"scene": scene}
     if name and case.wishes.part.get("level") is not None:
-        key["title"] = f"{name} = {levels.number(case.wishes.part['level'])}"
+        title, unit = parted(titled(mesh.run(), name))
+        key["title"] = f"{title} = {levels.number(case.wishes.part['level'])} {unit}".rstrip()
     layers = [Layer(mesh, drawn), *case.edges(camera)]
     return Drawing(layers, camera, scene, lit, words, [key], kind=mesh)
 
