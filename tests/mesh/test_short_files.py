@@ -412,3 +412,18 @@ def test_a_damaged_file_of_exodus_is_opened_by_another_process(tmp_path, monkeyp
     monkeypatch.setattr(short_files, "_EXODUS_SECONDS", 0.2)
     with pytest.raises(FileError, match="VTK's reader of Exodus does not come to an end"):
         vizlight.read(path)
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_polyhedra_of_legacy_files_have_whole_faces(tmp_path, binary):
+    path = tmp_path / "a.vtk"
+    grid = pv.UnstructuredGrid(pv.examples.cells.Polyhedron())
+    grid.save(path, binary=binary)
+    assert short_files.missing_part(path) == ""
+    assert vizlight.read(path).n_cells == 1
+    tetra = pv.UnstructuredGrid(pv.examples.cells.Tetrahedron())
+    tetra.save(path, binary=binary)
+    text = path.read_bytes()
+    kind = (b"\n10\n", b"\n42\n") if not binary else (b"\0\0\0\n", b"\0\0\0*")
+    path.write_bytes(kind[1].join(text.rsplit(kind[0], 1)))
+    assert short_files.missing_part(path) == "cell 0 is no polyhedron of whole faces"

@@ -26,6 +26,7 @@ from urllib.parse import unquote
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonDataModel import VTK_POLYHEDRON
 
 from vizlight import _check
 from vizlight.mesh import references, series
@@ -34,7 +35,7 @@ from vizlight.vtk.cells import cell_arrays, connectivity, points_of_type
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from vizlight._types import Foreign, Keywords
+    from vizlight._types import Foreign, Indices, Keywords
 
 __all__ = ["missing_numbers", "missing_part", "warn_of_last_line"]
 
@@ -803,7 +804,39 @@ def _types(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
         there = min(count, (len(data) - start) // 4)
         numbers = np.frombuffer(data, ">i4", there, start)
     unknown = [kind for kind in np.unique(numbers) if points_of_type(int(kind)) is None]
-    return f"VTK has no cells of type {unknown[0]}" if unknown else ""
+    if unknown:
+        return f"VTK has no cells of type {unknown[0]}"
+    return _polyhedra(data, at, is_text, np.flatnonzero(numbers == VTK_POLYHEDRON))
+
+
+_ENDS = re.compile(rb"\nCELLS[ \t]+\d+[ \t]+\d+\s+OFFSETS[ \t]+\w*?(32|64)[ \t]*\r?\n")
+_IDS = re.compile(rb"\nCONNECTIVITY[ \t]+\w+[ \t]*\r?\n")
+
+
+def _polyhedra(data: mmap.mmap | bytes, at: int, is_text: bool, cells: Indices) -> str:
+    """Return the reason why cells are not their faces, each with its number of corners before it.
+
+    Since version 5 cells are arrays of ends and of corners, which are before their types.
+    """
+    if not len(cells):
+        return ""
+    first = _ENDS.search(data, max(data.rfind(b"\nCELLS ", 0, at), 0))
+    middle = _IDS.search(data, first.end()) if first else None
+    if first is None or middle is None:
+        return ""
+    parts, size = (data[first.end() : middle.start()], data[middle.end() : at]), int(first[1]) // 8
+    if is_text:
+        ends, corners = (np.fromstring(part, np.int64, sep=" ") for part in parts)
+    else:
+        ends, corners = (np.frombuffer(part, f">i{size}", len(part) // size) for part in parts)
+    for cell in cells:
+        faces = corners[ends[cell] : ends[cell + 1]].tolist()
+        place, count = 1, len(faces)
+        for _ in range(min(faces[0], count) if faces else 0):
+            place += faces[place] + 1 if place < count and faces[place] >= 0 else count
+        if place != count:
+            return f"cell {cell} is no polyhedron of whole faces"
+    return ""
 
 
 def _cells(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
