@@ -180,6 +180,7 @@ WRONG = {
     "block": ("a.mdpa", b"Begin Nodes\n 1 0.0 0.0 0.", "do not end as they begin"),
     "short": ("a.vtk", FIELD.replace(b"a 1 4", b"a 3 4"), "4 of 12 numbers"),
     "word": ("a.vtk", FIELD.replace(b"1 2 3 4\n", b"1 \xb5 3 4\n"), "words stand among"),
+    "no count": ("a.vtk", FIELD.replace(b"F 1\n", b"F\xff\n"), "a field has no number of arrays"),
     "kind": ("a.vtk", FIELD.replace(b"4 float\n1", b"4 5\n1"), "a field has the type '5'"),
     "huge cell": ("a.vtk", cells(3, 0, 1, 2, 99999999, 1, 2, 3), "corners of 2 cells are not 8"),
     "binary cell": ("a.vtk", cells(3, 0, 1, 2, -7, 1, 2, 3, text=False), "corners of 2 cells"),

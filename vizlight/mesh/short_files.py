@@ -868,9 +868,11 @@ def _cells(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
 
 def _field(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
     """Return the reason why a field that begins at a place is not whole."""
-    head = re.compile(rb"\sFIELD[ \t]+\S+[ \t]*(\d*)").match(data, at)
-    at = at if head is None else head.end()
-    for _ in range(0 if head is None else int(head[1] or 1)):
+    head = re.compile(rb"\sFIELD[ \t]+\S+\s+(\d+)(?=\s)").match(data, at)
+    if head is None:
+        return "a field has no number of arrays"
+    at = head.end()
+    for _ in range(int(head[1])):
         array = _ARRAY.match(data, at)
         if array is None:
             return "an array of a field is missing"
