@@ -452,7 +452,7 @@ def _whole(
 
 
 def _name_in_one_line(mesh: pv.DataSet) -> None:
-    """Give arrays whose names begin or end with a space, or break, names that can be typed."""
+    """Take breaks, and spaces at the ends, out of the names of arrays, which can then be typed."""
     for name in (*mesh.point_data, *mesh.cell_data):
         line = " ".join(name.split())
         if line and line not in mesh.array_names and (name.strip() != name or "\n" in name):

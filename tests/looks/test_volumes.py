@@ -88,6 +88,16 @@ def test_an_isosurface_of_crumbs_gives_way_to_slices():
     assert not volumes._is_crumbs(volume().contour([0.0], scalars="T"))
 
 
+def test_what_a_side_of_a_scan_cuts_off_is_closed_but_pores_are_open():
+    grid = volume(count=40)
+    grid = grid.extract_subset((0, 39, 0, 39, 0, 31))
+    ball = vizlight.look(grid).mesh.clean()
+    assert ball.n_open_edges == 0
+    assert ball.bounds.z_max == pytest.approx(grid.bounds.z_max, abs=grid.spacing[2])
+    grid["T"] = -grid["T"]
+    assert vizlight.look(grid).mesh.clean().n_open_edges > 0
+
+
 def test_a_scan_fills_the_picture_and_not_its_box():
     grid = volume(count=40)
     look = vizlight.look(grid)

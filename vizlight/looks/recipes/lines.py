@@ -47,6 +47,8 @@ ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
 #: Most atoms of a molecule that are balls, their size in radii of van der Waals, and the sticks
 #: between them, in angstroms.
 MOST_BALLS, BALL, STICK = 1000, 0.2, {"radius": 0.1, "n_sides": 20}
+#: Atoms up to whose number balls are large in a picture, and as much finer.
+FEW_BALLS, FINER = 60, 3
 #: Size in pixels of balls up to which they are squares on a map.
 SMALL_BALL = 6.0
 
@@ -105,11 +107,14 @@ def molecule(case: Case) -> Drawing:
     bonds = atoms
     if array.role == "kinds":
         bonds = Step("halves", "files.surface_of", atoms, labels=array.name)
-    ball = Step("", "pyvista.Sphere", radius=1, theta_resolution=24, phi_resolution=16)
+    finer = FINER if atoms.run().n_points <= FEW_BALLS else 1
+    fine = {"theta_resolution": 24 * finer, "phi_resolution": 16 * finer}
+    ball = Step("", "pyvista.Sphere", radius=1, **fine)
     balls = Step("balls", ".glyph", atoms, orient=False, scale="radius", factor=BALL, geom=ball)
     solid = balls
     if atoms.run().n_lines:
-        solid = Step("molecule", ".append_polydata", balls, Step("", ".tube", bonds, **STICK))
+        stick = STICK | {"n_sides": STICK["n_sides"] * finer}
+        solid = Step("molecule", ".append_polydata", balls, Step("", ".tube", bonds, **stick))
     return surfaces.values(replace(case, data=solid, contents=Contents(solid.run())))
 
 

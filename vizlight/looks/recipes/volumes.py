@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 #: Least share of the side of its box that an isosurface has where the box is drawn.
 LEAST_OF_BOX = 0.4
-#: Fewest voxels along each side of a scan.
-VOXELS = 30
+#: Fewest voxels along each side of a scan, and the most of its sides that it closes.
+VOXELS, MOST_CLOSED = 30, 0.4
 #: Share of its range through which a second array runs on an isosurface that shows it.
 LEAST_SPREAD = 0.02
 #: Most pieces of an isosurface, where none has this share of it.
@@ -50,7 +50,8 @@ def isosurface(case: Case) -> Drawing:
         return slices(case, f"; no isosurface stands out ({steepest})")
     whole = case
     part = dict(case.wishes.part) | {"contour": array.name, "level": level}
-    mesh = replace(case.wishes, part=part).isosurface(case.data)
+    closed = _closed(case.data, array.name, level) if notes else case.data
+    mesh = replace(case.wishes, part=part).isosurface(closed)
     if case.wishes.question == "auto" and _is_crumbs(mesh.run()):
         return slices(whole, "; isosurfaces are crumbs")
     contents = Contents(mesh.run())
@@ -78,6 +79,19 @@ def isosurface(case: Case) -> Drawing:
     if notes or not around:
         return drawing
     return replace(drawing, layers=[*drawing.layers, *whole.boxed(box, drawing.camera)])
+
+
+def _closed(image: Step, name: str, level: float) -> Step:
+    """Return an image with a margin below a level, in which cut-off parts are closed, no cups.
+
+    One whose sides are mostly above it, such as of a rock with pores, would be a box: it is left.
+    """
+    mesh = image.run()
+    values = np.asarray(mesh[name]).reshape(mesh.dimensions, order="F")
+    sides = (values.take(end, axis) > level for axis in range(3) for end in (0, -1))
+    if np.mean(np.concatenate([side.ravel() for side in sides])) > MOST_CLOSED:
+        return image
+    return Step("closed", ".pad_image", image, pad_value=float(np.nanmin(values)), scalars=name)
 
 
 def _is_crumbs(mesh: pv.DataSet) -> bool:
