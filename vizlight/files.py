@@ -45,6 +45,7 @@ from vizlight.mesh import (
     series,
     short_files,
 )
+from vizlight.mesh.creases import creases
 from vizlight.mesh.polylines import by_end
 from vizlight.mesh.subdivision import by_corner, simplices
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
@@ -63,8 +64,8 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "FileError", "layer_of", "layers", "read", "read_parts", "stretched", "surface_of", "warped",
-    "with_vectors", "write_mesh",
+    "FileError", "creases", "layer_of", "layers", "read", "read_parts", "stretched", "surface_of",
+    "warped", "with_vectors", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.

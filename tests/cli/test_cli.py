@@ -292,7 +292,9 @@ def ball(tmp_path):
 @pytest.mark.opengl
 @pytest.mark.parametrize("name", ["lit.vtp", "lit.png"])
 def test_a_mesh_is_read_once_and_what_draws_is_loaded_for_a_picture(name, ball):
-    reads, modules = counted(ball, "light", "ball.vtp", "-o", name, "--size", "60x40")
+    # Of vectors a picture is drawn to see whether it can be read.
+    words = ("light", "ball.vtp", "--array", "height", "-o", name, "--size", "60x40")
+    reads, modules = counted(ball, *words)
     assert reads == 1
     assert ("vizlight.draw.component" in modules) == (name == "lit.png")
     assert "vizlight.pieces.run" not in modules

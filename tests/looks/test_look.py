@@ -250,6 +250,12 @@ def test_every_rule_can_be_reached():
         assert any(rule.shown == what for _, what in shown) or rule.shown == "hull"
 
 
+def test_a_surface_without_data_has_the_name_of_its_file_as_its_title(tmp_path):
+    pv.Cone().save(tmp_path / "bracket.v2.stl")
+    assert 'title="bracket"' in vizlight.look(tmp_path / "bracket.v2.stl", size=SIZE).script()
+    assert 'title="surface"' in vizlight.look(pv.Sphere(), size=SIZE).script()
+
+
 def test_a_molecule_has_balls_for_its_atoms_and_sticks_between_them(tmp_path):
     path = tmp_path / "water.xyz"
     path.write_text("3\n\nO 0 0 0\nH 0.76 0.59 0\nH -0.76 0.59 0\n")

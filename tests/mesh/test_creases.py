@@ -4,26 +4,26 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight import render
+from vizlight import files
 
 
 def test_creases_of_a_box_are_its_edges_and_a_ball_has_none():
     block = pv.Box().triangulate().subdivide(2, subfilter="linear")
-    edges = render.creases(block)
+    edges = files.creases(block)
     assert edges.n_cells == 12 * 4
     assert np.isclose(np.abs(edges.points), 1.0).sum(axis=1).min() == 2
-    assert not render.creases(pv.Sphere()).n_cells
+    assert not files.creases(pv.Sphere()).n_cells
     # Faces that are wound against their neighbours make no crease.
     faces = block.regular_faces.copy()
     faces[::3] = faces[::3, ::-1]
-    assert render.creases(pv.PolyData.from_regular_faces(block.points, faces)).n_cells == 12 * 4
+    assert files.creases(pv.PolyData.from_regular_faces(block.points, faces)).n_cells == 12 * 4
     # Polylines beside the faces count for nothing.
     lines = np.insert(np.arange(180).reshape(-1, 3) % block.n_points, 0, 3, axis=1).ravel()
     beside = pv.PolyData(block.points, faces=np.insert(faces, 0, 3, axis=1).ravel(), lines=lines)
-    assert render.creases(beside).n_cells == 12 * 4
+    assert files.creases(beside).n_cells == 12 * 4
     # Faces that are there twice have no edge between two faces alone.
     twice = pv.PolyData(block.points, np.concatenate([block.faces, block.faces]))
-    assert not render.creases(twice).n_cells
+    assert not files.creases(twice).n_cells
 
 
 def test_edges_that_connect_to_no_length_are_roughness():
@@ -33,11 +33,11 @@ def test_edges_that_connect_to_no_length_are_roughness():
     # One tip, whose edges are as long as two cells.
     points[41 * 20 + 10, 2] += 0.03
     ground.points = points
-    edges = render.creases(ground)
+    edges = files.creases(ground)
     assert edges.n_cells == 40
     assert np.abs(edges.points[:, 0]).max() < 1e-6
 
 
 def test_other_meshes_are_refused():
     with pytest.raises(TypeError, match=r"^surface: expected a pyvista\.PolyData, got"):
-        render.creases(pv.ImageData(dimensions=(2, 2, 2)))
+        files.creases(pv.ImageData(dimensions=(2, 2, 2)))

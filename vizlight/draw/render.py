@@ -40,7 +40,6 @@ from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks, check
 from vizlight.mesh.both_sides import both_sides
-from vizlight.mesh.creases import creases
 from vizlight.mesh.polylines import backdrop
 from vizlight.shading.display import NO_DATA, displayable
 from vizlight.shading.results import DEFAULT_NAME, VALID
@@ -68,7 +67,6 @@ __all__ = [
     "canvas",
     "captions",
     "choose_backend",
-    "creases",
     "make_plotter",
     "over_shoulder",
     "pictures",

@@ -281,7 +281,7 @@ class Look:
             keys = list(drawing.keys)
             if keys and not any(key.get("title") for key in keys):
                 # Cameras of looks leave room for a title.
-                keys[0] = keys[0] | {"title": drawing.words}
+                keys[0] = keys[0] | {"title": _title(drawing)}
             for key in keys:
                 if key.get("question") == "value":
                     # A bar has the colours of the map, in even light.
@@ -346,6 +346,16 @@ class Look:
         text = base64.b64encode(data.getvalue()).decode()
         image = f'<img alt="{html.escape(self.summary)}" src="data:image/png;base64,{text}"/>'
         return f"{image}<pre>{html.escape(str(self))}</pre>"
+
+
+def _title(drawing: Drawing) -> str:
+    """Return the title of a drawing whose keys have none: a surface has the name of its file."""
+    source: object = drawing.layers[0].mesh
+    while isinstance(source, Step) and source.arguments:
+        source = source.arguments[0]
+    if drawing.words != "surface" or not isinstance(source, str | Path):
+        return drawing.words
+    return Path(source).name.partition(".")[0] or drawing.words
 
 
 def _key_step(plotter: Step, key: dict[str, object]) -> Step:

@@ -44,10 +44,10 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
     Examples
     --------
     >>> import pyvista as pv
-    >>> from vizlight import render
-    >>> render.creases(pv.Box()).n_cells
+    >>> from vizlight import files
+    >>> files.creases(pv.Box()).n_cells
     12
-    >>> render.creases(pv.Sphere()).n_cells
+    >>> files.creases(pv.Sphere()).n_cells
     0
     """
     if not isinstance(surface, pv.PolyData):

@@ -250,7 +250,7 @@ class Case:
         """Step that takes the creases of a surface, None where it has none that are meant."""
         if not isinstance(self.surface.run(), pv.PolyData):
             return None
-        edges = Step("creases", "render.creases", self.surface)
+        edges = Step("creases", "files.creases", self.surface)
         return edges if edges.run().n_cells else None
 
     @cached_property
