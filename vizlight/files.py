@@ -125,6 +125,8 @@ _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive
 DRAFTS, FRESH, ABANDONED = ".vizlight-file-", ".vizlight-new-", 60.0
 
 
+#: Ends of names of files of scenes that neither VTK nor meshio reads.
+_SCENES = (".3mf", ".blend", ".dae", ".fbx", ".ifc", ".x3d")
 #: Files of CAD, whose surfaces have no points.
 _SHAPES = (".step", ".stp", ".iges", ".igs", ".brep")
 #: Molecules and tables that no reader takes.
@@ -592,19 +594,21 @@ def _by_package(path: Path) -> pv.DataObject:
     try:
         return pv.read(path, validate=False)
     except OSError as error:
-        way = "convert it to .ply, .obj, .stl, .vtu or .glb, "
-        way += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
-        if path.suffix.lower() in (*_UNPACK, ".zip"):
-            way = "unpack it first"
-        if path.suffix.lower() in _MOLECULES:
-            way = f"Open Babel makes a .pdb of it: obabel '{path.name}' -O '{path.stem}.pdb'"
-        if path.suffix.lower() in _TABLES:
-            way = "read its columns by NumPy or pandas, and look at a mesh of them: "
-            way += "mesh = pyvista.PolyData(rows of x, y, z), mesh['name'] = values"
-        if path.suffix.lower() == ".geo":
-            way = f"gmsh makes a mesh of it: gmsh -3 -format msh2 '{path.name}'"
-        if path.suffix.lower() in _SHAPES:
-            way = f"gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{path.name}' -o '{path.stem}.stl'"
+        usual = "convert it to .ply, .obj, .stl, .vtu or .glb, "
+        usual += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
+        columns = "read its columns by NumPy or pandas, and look at a mesh of them: "
+        columns += "mesh = pyvista.PolyData(rows of x, y, z), mesh['name'] = values"
+        name, stem = path.name, path.stem
+        mesh = "gmsh makes a mesh of it: gmsh"
+        ways = (
+            ((*_UNPACK, ".zip"), "unpack it first"),
+            (_MOLECULES, f"Open Babel makes a .pdb of it: obabel '{name}' -O '{stem}.pdb'"),
+            (_TABLES, columns),
+            ((".geo",), f"{mesh} -3 -format msh2 '{name}'"),
+            (_SHAPES, f"{mesh} -2 -clcurv 20 '{name}' -o '{stem}.stl'"),
+            (_SCENES, f"Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'"),
+        )
+        way = next((way for ends, way in ways if path.suffix.lower() in ends), usual)
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 
 
