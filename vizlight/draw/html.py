@@ -899,7 +899,7 @@ def _picture_of(plotter: pv.BasePlotter, shown: Sequence[PageMesh], frame: int) 
 
 
 def _question_of(live: Live) -> Question | None:
-    """Return the question whose key is shown, where the light comes from a preset."""
+    """Return the question of the key that is shown, where the light comes from a preset."""
     if live.scene is None or live.scalars is not None:
         return None
     question = QUESTIONS.get(preset_of(live.scene) or "")

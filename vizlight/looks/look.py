@@ -349,7 +349,7 @@ class Look:
 
 
 def _title(drawing: Drawing) -> str:
-    """Return the title of a drawing whose keys have none: a surface has the name of its file."""
+    """Return the title of a drawing of keys without one: a surface has the name of its file."""
     source: object = drawing.layers[0].mesh
     while isinstance(source, Step) and source.arguments:
         source = source.arguments[0]
