@@ -150,7 +150,7 @@ CASES = {
     ),
     "field.vtk": Case(
         text("# vtk DataFile Version 3.0", "cut", "ASCII", "DATASET POLYDATA", "FIELD F")[:-1],
-        2, "an array of a field is missing",
+        2, "a field has no number of arrays",
     ),
     "version.vtk": Case(
         text("# vtk DataFile Version g.1", "words", "ASCII", "DATASET NONE"),

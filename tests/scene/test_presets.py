@@ -177,7 +177,7 @@ from vizlight import cli
 from vizlight.draw import html
 assert vizlight.__path__ == [{str(package)!r}]
 assert vizlight.look("ball.vtp", "dusk").question == "dusk"
-assert html._looks(lines=False)["dusk"]["title"] == "Dusk"
+assert html._looks(lines=False, values=False)["dusk"]["title"] == "Dusk"
 assert vizlight.presets.key("dusk", question="dusk").field_data["words"] == ["low"]
 raise SystemExit(cli.main(["light", "ball.vtp", "--for", "dusk", "-o", "lit.vtp"]))
 """
