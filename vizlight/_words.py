@@ -1,4 +1,4 @@
-"""The words of an error message and the entries of a docstring; nothing here needs NumPy."""
+"""Words of error messages, docstrings and directions; nothing here needs NumPy."""
 
 from __future__ import annotations
 
@@ -9,6 +9,14 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from vizlight._types import Vector
+
+#: Directions of the axes by name.
+AXES: dict[str, Vector] = {
+    "x": (1.0, 0.0, 0.0), "-x": (-1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "-y": (0.0, -1.0, 0.0),
+    "z": (0.0, 0.0, 1.0), "-z": (0.0, 0.0, -1.0),
+}  # fmt: skip
 
 
 def message(name: str, expected: str, got: object, remedy: str = "") -> str:

@@ -21,7 +21,7 @@ from cyclopts import App, Group, Parameter
 from vizlight import _words
 from vizlight._questions import QUESTIONS
 from vizlight._version import __version__
-from vizlight._words import message
+from vizlight._words import AXES, message
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Mapping
@@ -310,23 +310,15 @@ def numbers(text: str, counts: Container[int] = (3,)) -> tuple[float, ...]:
     return values if len(values) in counts and all(map(math.isfinite, values)) else ()
 
 
-#: Directions by the names of axes.
-_AXES = {
-    f"{sign}{axis}": ",".join(f"{sign}1" if axis == own else "0" for own in "xyz")
-    for sign in ("", "-")
-    for axis in "xyz"
-}
-
-
 def vector(name: str, text: str, *, n: int = 3, direction: bool = True) -> tuple[float, ...]:
     """Return a vector x,y,z, with zeros for missing components up to n.
 
     A direction is not zero, and may be the name of an axis; one toward a light may be
     azimuth,altitude in degrees.
     """
-    text = _AXES.get(text, text) if direction else text
     by_angles = name == "light"
-    values = numbers(text, (3, n, 2) if by_angles else (3, n))
+    axis = AXES.get(text, ()) if direction else ()
+    values = axis or numbers(text, (3, n, 2) if by_angles else (3, n))
     if not values:
         expected = "three numbers x,y,z" + f" or {n} numbers" * (n != 3)
         expected += ", or azimuth,altitude in degrees" * by_angles
@@ -349,7 +341,7 @@ def plane(
 ) -> tuple[tuple[float, ...], float]:
     """Return a normal and the distance of the plane from the origin along it."""
     normal, _, offset = text.rpartition(":")
-    values = numbers(_AXES.get(normal.lower(), normal), counts)
+    values = AXES.get(normal.lower()) or numbers(normal, counts)
     distance = numbers(offset, (1,))
     if not (any(values) and distance):
         raise ValueError(message(f"--{name}", expected, repr(text)))

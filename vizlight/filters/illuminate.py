@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from vizlight.scene import Scene
     from vizlight.scene.presets import AnyScene
     from vizlight.shading.options import Exponent, Facing, FeatureAngle, Model, Precision
-    from vizlight.vtk.normals import Sided, Told
+    from vizlight.vtk.normals import Sided, Vote
 
 
 @named
@@ -189,17 +189,17 @@ def light_mesh(
     *,
     inplace: bool = False,
     progress_bar: bool = False,
-    told: Told | None = None,
+    vote: Vote | None = None,
     known: Sided | None = None,
 ) -> MeshT:
     """Light a mesh by options that are checked; see :func:`illuminate`.
 
-    ``told`` is what the whole decides of its sides, where the mesh is a part of one, and ``known``
+    ``vote`` is what the whole decides of its sides, where the mesh is a part of one, and ``known``
     are the normals of a dataset that were computed already.
     """
     scene = as_scene(scene)
     inplace = _check.boolean("inplace", inplace)
-    taken, parts = parts_of(mesh, scene, options, told, known, joined=True)
+    taken, parts = parts_of(mesh, scene, options, vote, known, joined=True)
     return light_parts(
         mesh, taken, parts, scene, options, inplace=inplace, progress_bar=progress_bar
     )
@@ -209,7 +209,7 @@ def parts_of(
     mesh: MeshT,
     scene: Scene,
     options: LightOptions,
-    told: Told | None = None,
+    vote: Vote | None = None,
     known: Sided | None = None,
     *,
     joined: bool = False,
@@ -236,7 +236,7 @@ def parts_of(
         for (one, sided), other in zip(split, taken, strict=True)
     ]
     paths = [path for _, path in named]
-    parts = lighting.parts_of(taken, paths, scene, options, known_of, told, joined=joined)
+    parts = lighting.parts_of(taken, paths, scene, options, known_of, vote, joined=joined)
     _tell_of_averages(named, options)
     return taken, parts
 

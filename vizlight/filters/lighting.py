@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from vizlight.shading.options import Bundle, LightOptions, Options, ShadingOptions
     from vizlight.shading.results import Record
     from vizlight.vtk.batches import Batch
-    from vizlight.vtk.normals import Sided, Told
+    from vizlight.vtk.normals import Sided, Vote
     from vizlight.vtk.parts import Part
 
 #: Options that may name an array.
@@ -40,11 +40,11 @@ def part_of(
     scene: Scene,
     options: LightOptions,
     known: Sided | None = None,
-    told: Told | None = None,
+    vote: Vote | None = None,
 ) -> Part:
     """Return what one mesh is lit by; see :func:`vizlight.vtk.parts.part_of`.
 
-    ``known`` are normals of its surface that were computed already, and ``told`` is what a whole
+    ``known`` are normals of its surface that were computed already, and ``vote`` is what a whole
     decides of its sides.
     """
     part = vtk_parts.part_of(
@@ -54,7 +54,7 @@ def part_of(
         options,
         kept_normals=normals.kept if known is None else lambda _: known,
         kept_tangents=subdivision.kept_tangents,
-        told=told,
+        vote=vote,
     )
     # Triangles are found only where something asks for them, such as a report between the points.
     cells = lambda: subdivision.simplices(mesh)  # noqa: E731
@@ -67,7 +67,7 @@ def parts_of(
     scene: Scene,
     options: LightOptions,
     known: Sequence[Sided | None],
-    told: Told | None = None,
+    vote: Vote | None = None,
     *,
     joined: bool = False,
 ) -> list[Part]:
@@ -77,14 +77,14 @@ def parts_of(
     """
     joint: list[Part] = []
     try:
-        for batch in _batches(meshes, options, known) if joined and told is None else ():
+        for batch in _batches(meshes, options, known) if joined and vote is None else ():
             joint += vtk_parts.parts_of(batch, scene, options)
     except (TypeError, ValueError):
         # One by one an error names its block.
         joint.clear()
     done = {number for part in joint for number in part.numbers}
     return joint + [
-        part_of(mesh, paths[i], scene, options, known[i], told)._replace(numbers=(i,))
+        part_of(mesh, paths[i], scene, options, known[i], vote)._replace(numbers=(i,))
         for i, mesh in enumerate(meshes)
         if i not in done
     ]

@@ -170,6 +170,7 @@ def sky(
     # Nothing is attached before all is computed: a failure leaves the mesh as it was.
     out, lit = blocks.placed(mesh, taken, inplace=inplace)
     _attach(lit, results, options, finer=finer)
+    _warn_of_lost(results, options)
     return out
 
 
@@ -199,8 +200,10 @@ def with_sky(
         meshes, options, finer=finer, show=False, elevation=elevation, factor=factor
     )
     lit = [mesh.copy(deep=False) for mesh in taken]
-    # Of heights the caller says which are missing.
-    _attach(lit, results, options, finer=finer, says_lost=elevation is None)
+    _attach(lit, results, options, finer=finer)
+    if elevation is None:
+        # Of heights the caller says which are missing.
+        _warn_of_lost(results, options)
     return lit
 
 
@@ -318,16 +321,23 @@ def _found(
         return results
 
 
+def _warn_of_lost(results: Sequence[Sky], options: SkyOptions) -> None:
+    """Warn if points have no sky."""
+    lost = sum(int(np.count_nonzero(~result.valid)) for result in results)
+    if lost:
+        total = sum(len(result.valid) for result in results)
+        _check.warn(
+            f"{lost} of {total} points have no sky (in a hole, without a normal, or buried inside "
+            f"a surface) and that of the nearest point; the point array {options.name + VALID!r} "
+            "marks them"
+        )
+
+
 def _attach(
-    meshes: Sequence[pv.DataSet],
-    results: Sequence[Sky],
-    options: SkyOptions,
-    *,
-    finer: bool,
-    says_lost: bool = True,
+    meshes: Sequence[pv.DataSet], results: Sequence[Sky], options: SkyOptions, *, finer: bool
 ) -> None:
     """Attach skies to meshes, with their records."""
-    lost = total = dark = 0
+    dark = 0
     bent, length = 0.0, 0.0
     errors = [result.error for result in results if result.error is not None]
     requested = max((result.requested for result in results), default=0.0)
@@ -348,7 +358,6 @@ def _attach(
         if result.between > bent:
             bent, length = result.between, mesh.length
         missing = int(np.count_nonzero(~result.valid))
-        lost, total = lost + missing, total + len(result.valid)
         if missing:
             arrays[options.name + VALID] = result.valid
         if result.openness is not None:
@@ -363,13 +372,8 @@ def _attach(
         if active is not None:
             # Such as the heights of a flat grid.
             records.activate(mesh, active.GetName())
-    if lost and says_lost:
-        _check.warn(
-            f"{lost} of {total} points have no sky (in a hole, without a normal, or buried inside "
-            f"a surface) and that of the nearest point; the point array {options.name + VALID!r} "
-            "marks them"
-        )
     if dark:
+        total = sum(len(result.valid) for result in results)
         _check.warn(
             f"{dark} of {total} points see nothing of the sky: they lie in cavities or folds, or "
             "other faces touch them"

@@ -349,10 +349,8 @@ class Look:
 
 
 def _title(drawing: Drawing) -> str:
-    """Return the title of a drawing of keys without one: a surface has the name of its file."""
-    source: object = drawing.layers[0].mesh
-    while isinstance(source, Step) and source.arguments:
-        source = source.arguments[0]
+    """Return the title for a key without one: of a surface the name of its file."""
+    *_, source = drawing.layers[0].mesh.chain()
     if drawing.words != "surface" or not isinstance(source, str | Path):
         return drawing.words
     return Path(source).name.partition(".")[0] or drawing.words

@@ -102,6 +102,16 @@ class Step:
             return setattr(owner, last[:-1], arguments[1])
         return getattr(owner, last)(*arguments[1:], **keywords)
 
+    def chain(self) -> Iterator[object]:
+        """Yield the step, that of its first argument and so on, to the value they begin with."""
+        value: object = self
+        while isinstance(value, Step):
+            yield value
+            if not value.arguments:
+                return
+            value = value.arguments[0]
+        yield value
+
     def parts(self) -> Iterator[object]:
         """Yield the arguments and keywords."""
         yield from self.arguments

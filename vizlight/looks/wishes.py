@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
-from vizlight._words import message
+from vizlight._words import AXES, message
 from vizlight.draw.cameras import VIEW_ANGLE
 from vizlight.draw.keywords import LIGHT
 from vizlight.draw.margins import LETTERS, data_share
@@ -37,10 +37,9 @@ if TYPE_CHECKING:
 #: Backgrounds of the two styles, and the inks on them.
 STYLES = {"paper": "white", "dark": "#14161a"}
 #: Directions toward the eye that have a name.
-VIEWS: dict[str, Vector] = {
-    "x": (1.0, 0.0, 0.0), "-x": (-1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "-y": (0.0, -1.0, 0.0),
-    "z": (0.0, 0.0, 1.0), "-z": (0.0, 0.0, -1.0), "iso": (1.0, 1.0, 1.0),
-    "isometric": (1.0, 1.0, 1.0), "above": (0.0, 0.0, 1.0), "front": (0.0, -1.0, 0.0),
+VIEWS: dict[str, Vector] = AXES | {
+    "iso": (1.0, 1.0, 1.0), "isometric": (1.0, 1.0, 1.0),
+    "above": AXES["z"], "front": AXES["-y"],
 }  # fmt: skip
 #: Azimuth and altitude of the sun of maps, in degrees: cartographers' north-west.
 SUN = (315.0, 30.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import itertools
 import math
 import re
@@ -188,8 +189,7 @@ def read(
                 notes = grib_groups.missing_messages(file)
                 reader = _Reader(file, [*notes, note] if note else notes)
                 return reader.grid(time, along, nodata, str(path))
-        engine = "zarr" if path.suffix.lower() in ZARR else None
-        options: Keywords = {"engine": engine, "decode_times": False}
+        options: Keywords = {"engine": _engine(path), "decode_times": False}
         try:
             opened = xarray.open_dataset(path, decode_coords="all", **options)
         except ValueError as error:
@@ -204,6 +204,16 @@ def read(
                 "MDAnalysis"
             )
         return of_dataset(file, time, at, nodata, source=str(path))
+
+
+def _engine(path: Path) -> Foreign:
+    """Return what xarray opens a file with: NetCDF4 as a class, since a name loads all engines."""
+    from xarray.backends import NetCDF4BackendEntrypoint as NetCDF4
+
+    if path.suffix.lower() in ZARR:
+        return "zarr"
+    is_there = importlib.util.find_spec("netCDF4") is not None
+    return NetCDF4 if is_there and NetCDF4().guess_can_open(str(path)) else None
 
 
 def of_dataset(

@@ -10,6 +10,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.vtk.cells import check_whole, connectivity
 from vizlight.vtk.corners import SHARP
+from vizlight.vtk.memory import once
 from vizlight.vtk.normals import creases as share_of_creases
 
 if TYPE_CHECKING:
@@ -54,6 +55,11 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
         raise TypeError(_check.message("surface", "a pyvista.PolyData", _check.describe(surface)))
     check_whole(surface, "surface")
     carried = surface.point_data.active_normals_name is not None
+    edges = once(surface, f"creases {carried}", lambda: _creases(surface, carried=carried))
+    return edges.copy()
+
+
+def _creases(surface: pv.PolyData, *, carried: bool) -> pv.PolyData:
     if not share_of_creases(surface, has_normals=carried):
         return pv.PolyData()
     if not _are_wound_alike(surface):

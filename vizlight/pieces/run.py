@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from vizlight.pieces.workers import Map
     from vizlight.scene import Scene
     from vizlight.scene.presets import AnyScene
-    from vizlight.vtk.normals import Told
+    from vizlight.vtk.normals import Vote
 
 
 @dataclass(frozen=True)
@@ -326,10 +326,10 @@ def _check_options(filter_name: str, options: Keywords, contour: str | None, gho
 
 def _with_sides(
     parts: list[Piece], job: Job, targets: Sequence[Path], work: RetryingMap
-) -> tuple[Job, list[Told | None]]:
+) -> tuple[Job, list[Vote | None]]:
     """Return the job, and the sides of each piece where all pieces together decide them."""
     light_options = LightOptions.of(job.options)
-    decisions: list[Told | None] = [None] * len(parts)
+    decisions: list[Vote | None] = [None] * len(parts)
     sharp = light_options.feature_angle == "auto"
     if not job.ghost or not (light_options.facing == "auto" or sharp):
         return job, decisions  # without neighbours each piece is a whole

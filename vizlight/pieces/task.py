@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Foreign, Given
     from vizlight.pieces.sources import Piece
-    from vizlight.vtk.normals import Sided, Told
+    from vizlight.vtk.normals import Sided, Vote
 
 T = TypeVar("T")
 
@@ -228,7 +228,7 @@ def _kept_beside(target: Path) -> Path:
     return target.with_name(target.name + ".npz")
 
 
-def _kept(piece: Piece, target: Path, whole_sides: Told | None) -> tuple[pv.DataSet, Sided] | None:
+def _kept(piece: Piece, target: Path, whole_sides: Vote | None) -> tuple[pv.DataSet, Sided] | None:
     """Return a piece without cells of others, and the normals that were kept of it, if any were."""
     path = _kept_beside(target)
     if whole_sides is None or not path.exists():
@@ -247,7 +247,7 @@ def _others(mesh: pv.DataSet) -> Array:
     return means(mesh, np.asarray(mesh.cell_data[GHOST], dtype=np.float32))
 
 
-def light(piece: Piece, job: Job, target: Path, whole_sides: Told | None = None) -> PieceSummary:
+def light(piece: Piece, job: Job, target: Path, whole_sides: Vote | None = None) -> PieceSummary:
     """Light a piece, with sides that the whole may have decided, and write it to a path.
 
     The path has no suffix.
@@ -292,7 +292,7 @@ def light(piece: Piece, job: Job, target: Path, whole_sides: Told | None = None)
 
 
 def _lit(
-    mesh: pv.DataSet, piece: Piece, job: Job, turn: Told | None, known: Sided | None
+    mesh: pv.DataSet, piece: Piece, job: Job, turn: Vote | None, known: Sided | None
 ) -> tuple[Foreign, float | None]:
     """Return the lit part that a piece owns, and its share of sharp edges where that is known."""
     if not mesh.n_points:
@@ -303,7 +303,7 @@ def _lit(
             turn = turn._replace(side=sides.side_of(_others(mesh)))
         options = LightOptions.of(job.options)
         turn = turn if known is None else None
-        lit = light_mesh(mesh, job.scene, options, inplace=True, told=turn, known=known)
+        lit = light_mesh(mesh, job.scene, options, inplace=True, vote=turn, known=known)
     else:
         lit = streamlines(mesh, job.scene, **job.options)
     record, names = records.read(lit, job.name), records.made(lit, job.name)

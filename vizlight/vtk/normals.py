@@ -216,7 +216,7 @@ class Sided:
         return np.where(field, np.where(averted[number], -size, size), limited)
 
 
-class Told(NamedTuple):
+class Vote(NamedTuple):
     """Decision of the whole about the pieces of a part, see :mod:`vizlight.vtk.sides`.
 
     Attributes
@@ -288,13 +288,13 @@ def sided_normals(
     facing: Facing,
     *,
     kept: Callable[[Foreign], Sided | None] | None = None,
-    told: Told | None = None,
+    vote: Vote | None = None,
     block: Indices | None = None,
 ) -> Sided:
     """Return normals with their sides: those in ``value``, of the mesh, or of its surface.
 
     ``kept`` is a function of the mesh that returns normals of its surface which are known already,
-    or None. ``told`` is the decision of the whole, of which the mesh is a part, about its sides.
+    or None. ``vote`` is the decision of the whole, of which the mesh is a part, about its sides.
     ``block`` is the number of the block of each point, where the mesh is several.
 
     Raises
@@ -306,8 +306,8 @@ def sided_normals(
     if vectors is None:
         if facing == "as given":
             return computed_normals(mesh, as_wound=True, sides=False, block=block)
-        if told is not None:
-            return computed_normals(mesh, told=told)
+        if vote is not None:
+            return computed_normals(mesh, vote=vote)
         return (kept and kept(mesh)) or computed_normals(mesh, block=block)
     # Integers without a sign, such as normals in bytes, could not be turned over.
     if vectors.dtype.kind != "f":
@@ -315,19 +315,19 @@ def sided_normals(
     # These two need no pieces; in n-space there is no order of corners that tells a side.
     if facing in ("eye", "as given") or n != 3:
         return Sided(vectors)
-    if told is None and hull.in_parts(mesh):
+    if vote is None and hull.in_parts(mesh):
         return _sided_grid(mesh, vectors)
     surface, origin = _skin(mesh)
     if surface is None:
         return Sided(vectors)
     on_surface = vectors if origin is None else vectors[origin]
     of = block if block is None or origin is None else block[origin]
-    if told is None:
+    if vote is None:
         inward, border = _of_given(surface, on_surface, of)
         # Given normals agree with each other by themselves, so that a block counts as one piece.
         number = sides_of(vectors, block, border)
     else:
-        inward, number = told.sign[:1] < 0, told.number
+        inward, number = vote.sign[:1] < 0, vote.number
     if inward.any():
         vectors = (
             -vectors if block is None else np.where(inward[block, np.newaxis], -vectors, vectors)
@@ -338,7 +338,7 @@ def sided_normals(
         lean = lean if origin is None else scattered(lean, origin, len(vectors))
         lean = lean if block is None else np.where(number[block] > 1, lean, 0)
     side = int(number[0]) if block is None else number[block]
-    return Sided(vectors, lean, open=side, averted=None if told is None else told.averted)
+    return Sided(vectors, lean, open=side, averted=None if vote is None else vote.averted)
 
 
 def _of_given(surface: vtkPolyData, normals: Array, block: Indices | None) -> tuple[Bools, Bools]:
@@ -457,7 +457,7 @@ def computed_normals(
     view: View | None = None,
     as_wound: bool = False,
     sides: bool = True,
-    told: Told | None = None,
+    vote: Vote | None = None,
     owner: vtkPolyData | None = None,
     block: Indices | None = None,
 ) -> Sided:
@@ -482,7 +482,7 @@ def computed_normals(
         Whether the normals have the sides that the order of the corners of each face gives them.
     sides : bool
         Whether lean and share of sharp edges are found.
-    told : Told, optional
+    vote : Vote, optional
         Decision of the whole, of which this is a part, about the pieces.
     owner : vtkPolyData, optional
         Surface: the normals are kept as long as its points; by default the mesh.
@@ -499,10 +499,10 @@ def computed_normals(
     Normals of a surface with the defaults are computed once, see :func:`~vizlight.vtk.memory.once`,
     and may not be changed.
     """
-    if view is None and sides and told is None and not as_wound:
+    if view is None and sides and vote is None and not as_wound:
         name = "normals" if block is None else f"normals {digest(block)}"
         return once(mesh, name, lambda: _frozen(_computed(mesh, block=block)), owner)
-    return _computed(mesh, view=view, as_wound=as_wound, sides=sides, told=told, block=block)
+    return _computed(mesh, view=view, as_wound=as_wound, sides=sides, vote=vote, block=block)
 
 
 def known_normals(mesh: vtkPolyData) -> Sided | None:
@@ -531,7 +531,7 @@ def _computed(
     view: View | None = None,
     as_wound: bool = False,
     sides: bool = True,
-    told: Told | None = None,
+    vote: Vote | None = None,
     outer: Outer | None = None,
     block: Indices | None = None,
 ) -> Sided:
@@ -539,10 +539,10 @@ def _computed(
     count = mesh.GetNumberOfPoints()
     if count == 0:
         return Sided(np.zeros((0, 3), dtype=np.float32), computed=True)
-    if told is None and hull.in_parts(mesh):
+    if vote is None and hull.in_parts(mesh):
         return _of_grid(mesh, view, as_wound=as_wound, sides=sides)
-    part = None if told is None else told.side
-    is_whole = told is None and outer is None and block is None
+    part = None if vote is None else vote.side
+    is_whole = vote is None and outer is None and block is None
     if is_whole and sides and view is None and not as_wound:
         on_map = _of_map(mesh)
         if on_map is not None:
@@ -565,13 +565,13 @@ def _computed(
     inside: int | Indices = 0
     if sides or not as_wound:
         sums, leaning = shape.survey(vectors)
-        if told is not None:
-            shape.turn(told.sign < 0, vectors, leaning)
+        if vote is not None:
+            shape.turn(vote.sign < 0, vectors, leaning)
         elif not as_wound:
             shape.orient(vectors, sums, leaning, view)
         if sides:
             lean = leaning if first is None else leaning[first]
-            side = sides_of(vectors, shape.piece, border) if told is None else told.number
+            side = sides_of(vectors, shape.piece, border) if vote is None else vote.number
             # What has no two sides is no height field, even where its normals fit in a half space.
             side = np.where(shape.inside_out, 1, side)
             share = crease_share(shape.edges)
@@ -586,7 +586,7 @@ def _computed(
         vectors = scattered(vectors, origin, count)
         number = scattered(number, origin, count)
         lean = None if lean is None else scattered(lean, origin, count)
-    averted = None if told is None else told.averted
+    averted = None if vote is None else vote.averted
     return Sided(vectors, lean, number, sharp, computed=True, inside=inside, averted=averted)
 
 

@@ -13,7 +13,7 @@ from vizlight.shading.inputs import ShadingInputs, Sides
 from vizlight.shading.plan import not_a_line
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import is_of_cells, named, points_of, tangents_of
-from vizlight.vtk.normals import Sided, Told, Turned, computed_normals, sided_normals
+from vizlight.vtk.normals import Sided, Turned, Vote, computed_normals, sided_normals
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -72,12 +72,12 @@ def part_of(
     *,
     kept_normals: Callable[[Foreign], Sided | None] | None = None,
     kept_tangents: Callable[[Foreign], Array | None] | None = None,
-    told: Told | None = None,
+    vote: Vote | None = None,
     block: Indices | None = None,
 ) -> Part:
     """Return the inputs of the light of one mesh; an error names the path of its block.
 
-    With ``told`` it is a part of a whole, see :mod:`vizlight.vtk.sides`, and with ``block`` it is
+    With ``vote`` it is a part of a whole, see :mod:`vizlight.vtk.sides`, and with ``block`` it is
     several, see :func:`parts_of`. Without a view both sides of an open surface are lit alike.
 
     Raises
@@ -101,7 +101,7 @@ def part_of(
                 n,
                 options.facing,
                 kept=kept_normals,
-                told=told,
+                vote=vote,
                 block=block,
             )
             # Lines and vertices beside faces: each point is lit as what it is, in one call of the

@@ -9,7 +9,7 @@ import numpy as np
 from vizlight import _pool
 from vizlight.model import kernels
 from vizlight.vtk.corners import crease_share
-from vizlight.vtk.normals import Sided, Told, facing_of, given_normals, wound_normals
+from vizlight.vtk.normals import Sided, Vote, facing_of, given_normals, wound_normals
 from vizlight.vtk.orientation import middles, sides_of
 from vizlight.vtk.topology import BLOCK, double_cover, place_numbers
 
@@ -85,12 +85,12 @@ class Undecided(NamedTuple):
     piece: Indices
     sharp: float
 
-    def decided(self, told: Told) -> Sided:
+    def decided(self, vote: Vote) -> Sided:
         """Return the normals on the sides that the whole has decided."""
-        sign = told.sign[self.piece].astype(np.float32)
+        sign = vote.sign[self.piece].astype(np.float32)
         return Sided(
-            self.vectors * sign[:, np.newaxis], self.lean * sign, told.number[self.piece],
-            float(self.sharp), kept=True, computed=True, averted=told.averted,
+            self.vectors * sign[:, np.newaxis], self.lean * sign, vote.number[self.piece],
+            float(self.sharp), kept=True, computed=True, averted=vote.averted,
         )  # fmt: skip
 
 
@@ -213,7 +213,7 @@ def _outermost(normals: Array, piece: Indices, count: int) -> tuple[Array, Indic
     return np.concatenate(extremes), np.concatenate(of)
 
 
-def decided(looks: Sequence[PartFacts]) -> list[Told]:
+def decided(looks: Sequence[PartFacts]) -> list[Vote]:
     """Return for each part the decision of the whole about its pieces."""
     count = [len(each.open) for each in looks]
     start = np.cumsum([0, *count])
@@ -252,7 +252,7 @@ def decided(looks: Sequence[PartFacts]) -> list[Told]:
     averted[number[number > 1]] = shown[number > 1] < 0
     numbers = number[group]
     return [
-        Told(sign[first : first + n], numbers[first : first + n], averted)
+        Vote(sign[first : first + n], numbers[first : first + n], averted)
         for first, n in zip(start[:-1], count, strict=True)
     ]
 

@@ -52,20 +52,20 @@ FIELDS = {
 def glyphs(plotter, mesh, name):
     """Draw arrows as long as the field is fast."""
     size = 0.06 * mesh.length / np.linalg.norm(mesh[name], axis=1).max()
-    made = mesh.glyph(orient=name, scale=name, factor=size, tolerance=0.025)
+    arrows = mesh.glyph(orient=name, scale=name, factor=size, tolerance=0.025)
     plotter.add_mesh(mesh, color="lightsteelblue")
-    plotter.add_mesh(made, color="black")
+    plotter.add_mesh(arrows, color="black")
 
 
 def streamlines(plotter, mesh, name):
     """Draw lines from 200 random places on the surface."""
     places = np.random.default_rng(0).choice(mesh.n_points, 200, replace=False)
     source = pv.PolyData(np.asarray(mesh.points)[places])
-    made = mesh.streamlines_from_source(
+    lines = mesh.streamlines_from_source(
         source, vectors=name, surface_streamlines=True, max_length=mesh.length / 5
     )
     plotter.add_mesh(mesh, color="lightsteelblue")
-    plotter.add_mesh(made, color="black", line_width=3)
+    plotter.add_mesh(lines, color="black", line_width=3)
 
 
 def lic(plotter, mesh, name):
@@ -75,7 +75,7 @@ def lic(plotter, mesh, name):
     plotter.add_actor(pv.Actor(mapper=mapper))
 
 
-def shown(fill, mesh, name, view):
+def plotter_of(fill, mesh, name, view):
     """Return a plotter with what a function adds."""
     plotter = pv.Plotter(off_screen=True, window_size=SIZE, border=False)
     plotter.background_color = "white"
@@ -90,9 +90,9 @@ def rows():
         mesh, name, view = load()
         looked = vizlight.look(mesh, array=name, view=view, size=SIZE, key=False)
         for marks, plotter in (
-            ("PyVista's glyphs", shown(glyphs, mesh, name, view)),
-            ("PyVista's streamlines", shown(streamlines, mesh, name, view)),
-            ("VTK's LIC", shown(lic, mesh, name, view)),
+            ("PyVista's glyphs", plotter_of(glyphs, mesh, name, view)),
+            ("PyVista's streamlines", plotter_of(streamlines, mesh, name, view)),
+            ("VTK's LIC", plotter_of(lic, mesh, name, view)),
             ("``vizlight.look``", looked.plotter()),
         ):
             read = plotter.vizlight.legibility()

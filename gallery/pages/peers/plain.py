@@ -50,11 +50,11 @@ def plain(names, fill, place=(0, 0)):
     place : (int, int)
         Row and column of the panel.
     """
-    own = names["plotter"]
-    own.subplot(*place)
-    plotter = pv.Plotter(off_screen=True, window_size=own.renderer.GetSize(), border=False)
-    plotter.background_color = own.background_color
-    plotter.camera = own.camera
+    ours = names["plotter"]
+    ours.subplot(*place)
+    plotter = pv.Plotter(off_screen=True, window_size=ours.renderer.GetSize(), border=False)
+    plotter.background_color = ours.background_color
+    plotter.camera = ours.camera
     actor = fill(plotter)
     plotter.enable_anti_aliasing("ssaa")
     return plotter, actor
@@ -63,7 +63,7 @@ def plain(names, fill, place=(0, 0)):
 def read(plotter, mesh=None, key=None, **how):
     """Return what the meter reads of the picture of a plotter, in a column of print.
 
-    What the plotter does not say of its picture is told by a mesh and a key.
+    A mesh and a key are for what the plotter does not know of its picture.
     """
     if mesh is None:
         return plotter.vizlight.legibility()
@@ -72,7 +72,7 @@ def read(plotter, mesh=None, key=None, **how):
     )
 
 
-def told(figure, name, times=1.0):
+def figure_of(figure, name, times=1.0):
     """Return an error, or a correlation, of what is read; a word where nothing is."""
     return "unreadable" if figure.unreadable else times * getattr(figure, name)
 
@@ -93,8 +93,8 @@ def winds():
         strokes.arrows(0.045, plotter)
 
     beside, _ = plain(names, fill)
-    found = [told(read(each).direction, "median") for each in (names["plotter"], beside)]
-    return *found, picture, None
+    figures = [figure_of(read(each).direction, "median") for each in (names["plotter"], beside)]
+    return *figures, picture, None
 
 
 def tubes(name, radius, question, figure):
@@ -110,8 +110,10 @@ def tubes(name, radius, question, figure):
     )
     key = Scene.from_plotter(beside, actor=actor)
     of_tubes = read(beside, lines, key, line_diameter=2 * radius, model="cylinder")
-    found = [told(getattr(each, question), figure) for each in (read(names["plotter"]), of_tubes)]
-    return *found, picture, None
+    figures = [
+        figure_of(getattr(each, question), figure) for each in (read(names["plotter"]), of_tubes)
+    ]
+    return *figures, picture, None
 
 
 def cortex():
@@ -121,7 +123,7 @@ def cortex():
     light = read(own, mesh, names["scene"]).shape
     own.subplot(0, 0)
     smooth = read(own, mesh, names["plain"], feature_angle=None).shape
-    return told(light, "median"), told(smooth, "median"), picture, None
+    return figure_of(light, "median"), figure_of(smooth, "median"), picture, None
 
 
 def islands():
@@ -137,13 +139,13 @@ def islands():
     shown = bare(ground)
     shown["elevation"] = ground["elevation"]
     colors = {"scalars": "elevation", "feature_angle": None}
-    found = [
-        told(read(each, shown, [scene, (names["tints"], ends)], **colors).shape, "median")
+    figures = [
+        figure_of(read(each, shown, [scene, (names["tints"], ends)], **colors).shape, "median")
         for each, scene in (
             (names["plotter"], names["scene"]), (beside, Scene.from_plotter(beside, actor=actor)),
         )
     ]  # fmt: skip
-    return *found, picture, kept.panel(beside)
+    return *figures, picture, kept.panel(beside)
 
 
 def blood():
@@ -151,26 +153,26 @@ def blood():
     names, picture = drawn("carotid")
 
     def fill(plotter):
-        made = names["blood"].tube(radius=0.12)
+        wide = names["blood"].tube(radius=0.12)
         plotter.add_mesh(
-            made, scalars="speed", cmap="viridis", smooth_shading=True, show_scalar_bar=False
+            wide, scalars="speed", cmap="viridis", smooth_shading=True, show_scalar_bar=False
         )
         plotter.add_mesh(bare(names["vessel"]), color="white", opacity=0.15, smooth_shading=True)
         plotter.enable_depth_peeling(8)
 
     beside, _ = plain(names, fill)
-    found = [told(read(each).value, "p95", 100) for each in (names["plotter"], beside)]
-    return *found, picture, kept.panel(beside)
+    figures = [figure_of(read(each).value, "p95", 100) for each in (names["plotter"], beside)]
+    return *figures, picture, kept.panel(beside)
 
 
 def six():
     """Compare the panel of the light of direction with that of VTK's LIC."""
     names, picture = drawn("read_direction")
-    found = []
+    figures = []
     for place in ((1, 2), (0, 2)):
         names["plotter"].subplot(*place)
-        found.append(told(read(names["plotter"]).direction, "median"))
-    return *found, picture, None
+        figures.append(figure_of(read(names["plotter"]).direction, "median"))
+    return *figures, picture, None
 
 
 def circles():
@@ -188,8 +190,8 @@ def circles():
         ),
     )
     light = lit_as_tubes(lines, beside, actor)
-    found = [spearmanr(made["luminance"], steep)[0] for made in (names["lit"], light)]
-    return *found, picture, kept.panel(beside)
+    figures = [spearmanr(made["luminance"], steep)[0] for made in (names["lit"], light)]
+    return *figures, picture, kept.panel(beside)
 
 
 def lit_as_tubes(lines, plotter, actor):
@@ -218,13 +220,13 @@ def hair():
         )
 
     beside, _ = plain(names, fill)
-    found = [
-        told(read(plotter, pv.MultiBlock([bare(dog), mesh]), [], **wide).direction, "median")
+    figures = [
+        figure_of(read(plotter, pv.MultiBlock([bare(dog), mesh]), [], **wide).direction, "median")
         for plotter, mesh, wide in (
             (names["plotter"], bare(fibres), {}), (beside, made, {"line_diameter": 0.0014}),
         )
     ]  # fmt: skip
-    return *found, picture, kept.panel(beside)
+    return *figures, picture, kept.panel(beside)
 
 
 def tori():
@@ -240,8 +242,8 @@ def tori():
         ),
     )
     tube = lit_as_tubes(curve, beside, actor)["luminance"]
-    found = [float(np.std(x) / np.mean(x)) for x in (shown["luminance"], tube)]
-    return *found, picture, kept.panel(beside)
+    figures = [float(np.std(x) / np.mean(x)) for x in (shown["luminance"], tube)]
+    return *figures, picture, kept.panel(beside)
 
 
 #: Scripts, questions, figures with their units, and what compares them, in the order of the page.

@@ -479,11 +479,9 @@ class Case:
     @property
     def _exaggeration(self) -> float:
         """Factor of the heights of what is drawn, 1 where they are as they are."""
-        step: object = self.data
-        while isinstance(step, Step):
-            if step.path == "files.warped":
+        for step in self.data.chain():
+            if isinstance(step, Step) and step.path == "files.warped":
                 return float(step.arguments[2])  # type: ignore[arg-type]
-            step = step.arguments[0] if step.arguments else None
         return 1.0
 
     @property

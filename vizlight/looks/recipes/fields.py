@@ -231,9 +231,9 @@ def pixel_of(case: Case, camera: Step) -> float:
 
 
 def turn_of(mesh: pv.DataSet, name: str) -> float:
-    """Return by how much vectors turn around half of the cells at most, in radians for each unit.
+    """Return how much vectors turn along the edges of a cell, in radians per length: the median.
 
-    A field that is smooth in most places is read there, whatever it does elsewhere.
+    The median is that of a field that is smooth in most places, whatever it does elsewhere.
     """
     mesh = records.averaged(mesh, name)
     first, starts, counts = sampled_corners(mesh)
