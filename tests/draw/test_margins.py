@@ -143,6 +143,18 @@ def test_a_bar_that_lies_is_below_a_map_and_as_wide():
     assert red[:, 1].min() > size[0] * margins.data_share(size, 0.15)[0]
 
 
+def test_numbers_below_the_ends_of_a_bar_are_whole():
+    size, plotter = (600, 400), pv.Plotter(off_screen=True, window_size=(600, 400))
+    plotter.vizlight.add_mesh(pv.Plane(i_size=6, j_size=2), color="blue", lighting=False)
+    bar = {"question": "value", "cmap": "Reds", "clim": (0, 3e5), "levels": [0, 1e5, 2e5, 3e5]}
+    plotter.vizlight.add_key(presets.shape(), title="rise (m)", lying=True, **bar)
+    aspect = size[0] / (size[1] * margins.data_share(size, 0.15, lying=True)[1])
+    plotter.camera = render.camera_on(plotter.meshes[0], (0, 0, 1), parallel=True, aspect=aspect)
+    seen = plotter.screenshot(return_img=True)
+    ink = np.flatnonzero((seen[size[1] // 2 :].max(axis=2) < 90).any(axis=0))
+    assert 4 < ink.min() < ink.max() < size[0] - 4
+
+
 def test_a_bar_stands_right_beside_a_narrow_map():
     size, plotter = (600, 400), pv.Plotter(off_screen=True, window_size=(600, 400))
     plotter.vizlight.add_mesh(pv.Plane(i_size=1, j_size=3), color="blue", lighting=False)

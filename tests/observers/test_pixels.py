@@ -110,14 +110,29 @@ def test_lines_of_a_diameter_are_bands_of_its_width_and_no_narrower_than_asked()
     np.testing.assert_allclose(lines.widths(above(), 100), [10, 20])
     np.testing.assert_allclose(lines.widths(camera, 20), [3, 3])
     np.testing.assert_allclose(lines._replace(diameter=None).widths(camera, 100), [3, 3])
-    corners, triangles = lines.bands(camera, 100)
-    where = np.array(corners.GetData()).reshape(-1, 4, 3)[0]
+    bands = lines.bands(camera, 100)
+    where = np.array(bands.points.GetData()).reshape(-1, 4, 3)[0]
     np.testing.assert_allclose(np.abs(where[:, :2]), np.tile([0.5, 0.1], (4, 1)), atol=1e-6)
     np.testing.assert_allclose(where[:, 2], 0.1, atol=1e-6)
-    assert triangles.shape == (4, 3)
+    assert bands.corners.shape == (4, 3)
     found = pixels.visible([lines], camera, (100, 100))
     assert np.count_nonzero(found.cell == 0) == pytest.approx(50 * 10, rel=0.1)
     np.testing.assert_allclose(np.abs(found.at[:, 1]).max(), 0.09, atol=0.011)
+
+
+def test_cells_drawn_in_blocks_are_those_of_one_drawing(monkeypatch):
+    ball, line = pv.Sphere(), pv.Line((-1, 0, 0.2), (1, 0, 0.2), resolution=9)
+    meshes = [
+        Cells(ball.GetPoints(), ball.regular_faces, 1.0),
+        Cells(line.GetPoints(), np.stack([np.arange(9), np.arange(1, 10)], axis=1), 3.0, 0.1),
+    ]
+    plane = pv.Actor(mapper=pv.DataSetMapper(pv.Plane(center=(0.5, 0.2, 0.6), i_size=0.5)))
+    whole = pixels.visible(meshes, above(), (100, 100), [plane])
+    monkeypatch.setattr(pixels, "BLOCK", 300)
+    blocks = pixels.visible(meshes, above(), (100, 100), [plane])
+    assert {0, 1} == {*whole.part}
+    for this, other in zip(whole[:4], blocks[:4], strict=True):
+        np.testing.assert_array_equal(this, other)
 
 
 def test_occluders_hide_cells_and_take_no_pixels():

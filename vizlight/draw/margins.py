@@ -148,7 +148,9 @@ class Margin:
         self._strip.SetViewport(x, bottom, end, upper)
         if _is_map(renderer):
             left, _, right, _ = _box_of(renderer, data=True)
-        left, right = max(left, gap), min(right, (end - x) * wide - gap)
+        # Numbers stand below the ends, half of each beyond.
+        beyond = gap + self._keys[0].widest(LETTERS * short) / 2
+        left, right = max(left, beyond), min(right, (end - x) * wide - beyond)
         if not self._keys[0].has_classes:
             # A bar without steps is read as well where it is shorter.
             left, right = (
@@ -398,6 +400,10 @@ class MarginKey:
         self._heading.GetTextProperty().SetJustificationToLeft()
         self._heading.SetPosition(left, y + box[1] / 2 - words)
 
+    def widest(self, letters: float) -> float:
+        """Return the width of the longest number beside a bar, with letters of a height."""
+        return LETTER * letters * max(len(word) for _, word in self._marks)
+
     def lay(self, columns: tuple[float, float], upper: float, letters: float) -> None:
         """Lay a bar between two columns, its numbers below it.
 
@@ -414,8 +420,7 @@ class MarginKey:
         self._heading.SetInput("")
         flat = self._flat * ((right - left) / 2, high / np.ptp(self._flat[:, 1]), 0)
         self._move(flat + np.array([(left + right) / 2, upper - high / 2, 0]))
-        widest = LETTER * letters * max(len(word) for _, word in self._marks)
-        most = (right - left) / (widest + letters) + 1
+        most = (right - left) / (self.widest(letters) + letters) + 1
         shown = _thinned([share for share, _ in self._marks], self._zero, most)
         for label, (share, word), visible in zip(self._labels, self._marks, shown, strict=True):
             label.GetTextProperty().SetFontSize(max(round(letters), 8))

@@ -76,7 +76,7 @@ def drawn(mesh: pv.DataSet) -> tuple[Indices, Indices | None]:
         return simplices(mesh), None
     corners, cell = drawn_triangles(mesh)
     # Cells are numbered by VTK's kinds: vertices and lines first.
-    return corners.astype(np.intp, copy=False), mesh.n_verts + mesh.n_lines + cell
+    return corners, mesh.n_verts + mesh.n_lines + cell
 
 
 def as_polydata(mesh: pv.DataSet) -> pv.PolyData:

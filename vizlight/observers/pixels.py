@@ -11,9 +11,10 @@ import numpy as np
 import pyvista as pv
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 - what draws registers itself
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkBoundingBox, vtkCellArray, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
+from vizlight import _pool
 from vizlight.draw.backends import choose_backend, window_class
 from vizlight.draw.cameras import footprint
 from vizlight.draw.live import in_view
@@ -22,7 +23,7 @@ from vizlight.model.kernels import unit_rows
 from vizlight.vtk.cells import as_numpy, as_vtk
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from vtkmodules.vtkCommonCore import vtkPoints
 
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 
 #: Bits of the three channels.
 BITS = 24
+#: Number of cells that are drawn at once, so that memory goes by pixels.
+BLOCK = 1 << 19
 
 
 class Cells(NamedTuple):
@@ -53,6 +56,27 @@ class Cells(NamedTuple):
     width: float
     diameter: float | None = None
 
+    def data(self) -> vtkPolyData:
+        """Return the points, segments or triangles as a mesh of VTK."""
+        kind = self.corners.shape[1]
+        cells, data = vtkCellArray(), vtkPolyData()
+        cells.SetData(kind, as_vtk(self.corners.ravel()))
+        data.SetPoints(self.points)
+        (data.SetVerts, data.SetLines, data.SetPolys)[kind - 1](cells)
+        return data
+
+    def blocks(self) -> Iterator[tuple[Cells, int]]:
+        """Yield the cells, many of them in parts with points of their own, and each first one."""
+        count = len(self.corners)
+        for block in _pool.blocks(count, BLOCK):
+            if block == slice(0, count):
+                yield self, 0
+                continue
+            ids, corners = np.unique(self.corners[block], return_inverse=True)
+            points = pv.vtk_points(as_numpy(self.points.GetData())[ids])
+            corners = corners.reshape(-1, self.corners.shape[1]).astype(np.int32)
+            yield self._replace(points=points, corners=corners), block.start
+
     def widths(self, camera: pv.Camera, height: int) -> Array:
         """Return the widths in pixels at the corners' beginnings, in a picture of some height."""
         count = len(self.corners)
@@ -61,7 +85,7 @@ class Cells(NamedTuple):
         points = as_numpy(self.points.GetData()).astype(np.float64)[self.corners[:, 0]]
         return np.asarray(np.maximum(self.diameter / footprint(camera, points, height), self.width))
 
-    def bands(self, camera: pv.Camera, height: int) -> tuple[vtkPoints, Indices]:
+    def bands(self, camera: pv.Camera, height: int) -> Cells:
         """Return lines of a diameter as bands that face the eye, two triangles for each segment.
 
         They are nearer to the eye by half of their width, as a tube is.
@@ -79,7 +103,8 @@ class Cells(NamedTuple):
             corners += [near - across, near + across]
         first = np.arange(len(start)) * 4
         triangles = np.stack([first, first + 1, first + 2, first + 1, first + 3, first + 2], axis=1)
-        return pv.vtk_points(np.stack(corners, axis=1).reshape(-1, 3)), triangles.reshape(-1, 3)
+        bands = pv.vtk_points(np.stack(corners, axis=1).reshape(-1, 3))
+        return Cells(bands, triangles.reshape(-1, 3), self.width)
 
 
 class Pixels(NamedTuple):
@@ -157,16 +182,19 @@ def visible(
     renderer.SetActiveCamera(camera)
     window.AddRenderer(renderer)
     lay_on_surfaces(renderer)
+    renderer.ResetCameraClippingRange(_box(meshes, occluders))
     number = np.zeros((height, width), dtype=np.int64)
     # A picture has 24 bits of a cell's number; more cells take more pictures.
     for shift in range(0, max(int(starts[-1]).bit_length(), 1), BITS):
-        renderer.RemoveAllViewProps()
-        for mesh, start in zip(meshes, starts.tolist(), strict=False):
-            renderer.AddActor(_actor(mesh, start, shift, camera, height))
-        for occluder in occluders:
-            renderer.AddActor(occluder)
-        renderer.ResetCameraClippingRange()
-        rgb = frame_of(window).astype(np.int64)
+        drawings = _drawings(meshes, starts.tolist(), shift, camera, height, occluders)
+        for i, actors in enumerate(drawings):
+            renderer.RemoveAllViewProps()
+            for actor in actors:
+                renderer.AddActor(actor)
+            # What was drawn before stays, with its depth.
+            renderer.SetPreserveColorBuffer(i > 0)
+            renderer.SetPreserveDepthBuffer(i > 0)
+            rgb = frame_of(window).astype(np.int64)
         number |= (rgb[..., 0] << 16 | rgb[..., 1] << 8 | rgb[..., 2]) << shift
     window.Finalize()
     # From the lowest row up: places are drawn from them at random.
@@ -215,22 +243,48 @@ def toward_eye(camera: pv.Camera, points: Array) -> Array:
     return unit_rows(np.array(camera.GetPosition()) - points)
 
 
+def _box(meshes: Sequence[Cells], occluders: Sequence[vtkActor]) -> tuple[float, ...]:
+    """Return the box around the cells of meshes and around actors."""
+    box = vtkBoundingBox()
+    for mesh in meshes:
+        bounds = [0.0] * 6
+        mesh.data().GetCellsBounds(bounds)
+        around = vtkBoundingBox(bounds)
+        around.Inflate((mesh.diameter or 0.0) / 2)
+        box.AddBox(around)
+    for occluder in occluders:
+        box.AddBounds(occluder.GetBounds())
+    bounds = [0.0] * 6
+    box.GetBounds(bounds)
+    return tuple(bounds)
+
+
+def _drawings(
+    meshes: Sequence[Cells], starts: Sequence[int], shift: int, camera: pv.Camera, height: int,
+    occluders: Sequence[vtkActor],
+) -> Iterator[list[vtkActor]]:  # fmt: skip
+    """Yield the actors that are drawn at once, first those that hide cells."""
+    actors, count = [*occluders], 0
+    for mesh, start in zip(meshes, starts, strict=False):
+        for cells, first in mesh.blocks():
+            if count >= BLOCK:
+                yield actors
+                actors, count = [], 0
+            actors.append(_actor(cells, start + first, shift, camera, height))
+            count += len(cells.corners)
+    yield actors
+
+
 def _actor(
     mesh: Cells, start: int, shift: int, camera: pv.Camera, height: int
 ) -> vtkActor:  # fmt: skip
     """Return a mesh with the numbers of its cells, from 1, as flat colours; 0 is background."""
-    points, shown = mesh.points, mesh.corners
-    number = np.arange(start + 1, start + 1 + len(shown)) >> shift
+    number = np.arange(start + 1, start + 1 + len(mesh.corners)) >> shift
     if mesh.diameter is not None:
-        points, shown = mesh.bands(camera, height)
+        mesh = mesh.bands(camera, height)
         number = np.repeat(number, 2)
-    corners = shown.shape[1]
     colors = np.stack([number >> place & 255 for place in (16, 8, 0)], axis=1).astype(np.uint8)
-    cells = vtkCellArray()
-    cells.SetData(corners, as_vtk(shown.ravel()))
-    data = vtkPolyData()
-    data.SetPoints(points)
-    (data.SetVerts, data.SetLines, data.SetPolys)[corners - 1](cells)
+    data = mesh.data()
     data.GetCellData().SetScalars(as_vtk(colors, "number"))
     mapper = vtkPolyDataMapper()
     mapper.SetInputData(data)

@@ -286,6 +286,8 @@ def drawn_triangles(surface: vtkPolyData) -> tuple[Indices, Indices]:
         Polygons that the triangles are taken from, and strips after them.
     """
     ids, offsets = connectivity(surface.GetPolys())
+    if not surface.GetNumberOfStrips() and surface.GetPolys().IsHomogeneous() == _TRIANGLE:
+        return ids.reshape(-1, _TRIANGLE), np.arange(len(offsets) - 1, dtype=np.int32)
     is_quad = np.diff(offsets) == _QUAD
     quads = ids[offsets[:-1][is_quad, np.newaxis] + np.arange(_QUAD)]
     number = np.append(
@@ -333,8 +335,8 @@ def _halves(quads: Indices, points: Raw) -> Indices | None:
     return corners.reshape(-1, 3)
 
 
-#: Number of corners of a quadrilateral.
-_QUAD = 4
+#: Numbers of corners.
+_TRIANGLE, _QUAD = 3, 4
 
 
 #: Number of each kind of cells of a vtkPolyData, and those cells.

@@ -17,7 +17,7 @@ from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on
 from vizlight.files import FORMATS
-from vizlight.looks import map_parts, two_sides
+from vizlight.looks import levels, map_parts, two_sides
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
@@ -562,10 +562,10 @@ def _in_unit(values: Sequence[float], unit: float) -> tuple[float, ...]:
     return tuple(float(f"{unit * value:.12g}") for value in values)
 
 
-def titled(mesh: pv.DataSet, name: str, *, course: bool = False) -> str:
+def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | None = None) -> str:
     """Return the name of an array with its date and its unit, where the mesh says them.
 
-    The course of a vector has no unit.
+    The course of a vector has no unit; that of a level stands after its number.
     """
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     word, of_brains = brains.MEASURES.get(name, ("", "")) if brains.hemisphere(mesh) else ("", "")
@@ -573,10 +573,13 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False) -> str:
     title = attributes.get("long_name") or attributes.get("standard_name") or word or name
     if "," in name:
         title = _in_common(mesh, name.split(",")) or name
+    unit = "" if unit == "1" else meaning.written(unit)
+    if level is not None:
+        title = f"{title} = {levels.number(level)} {unit}".rstrip()
     if series.TIME in mesh.field_data:
         date = _dated(mesh, attributes.get("cell_methods", ""))
         title += f", {date}" * bool(date)
-    return f"{title} ({meaning.written(unit)})" if unit not in ("", "1") and not course else title
+    return f"{title} ({unit})" if unit and not course and level is None else title
 
 
 def _dated(mesh: pv.DataSet, methods: str) -> str:

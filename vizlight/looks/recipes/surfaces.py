@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.draw.margins import parted
 from vizlight.filters.fur import LENGTH
-from vizlight.looks import levels
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
@@ -110,8 +108,7 @@ def surface(case: Case) -> Drawing:
     drawn = {"scene": scene, **case.wishes.drawn(light)}
     key: Keywords = {"scene": scene}
     if name and case.wishes.part.get("level") is not None:
-        title, unit = parted(titled(mesh.run(), name))
-        key["title"] = f"{title} = {levels.number(case.wishes.part['level'])} {unit}".rstrip()
+        key["title"] = titled(mesh.run(), name, level=case.wishes.part["level"])
     layers = [Layer(mesh, drawn), *case.edges(camera)]
     return Drawing(layers, camera, scene, lit, words, [key], kind=mesh)
 
