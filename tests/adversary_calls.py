@@ -242,6 +242,7 @@ OWN = {
     "smooth_maps.smoothed": {"mesh": hills, "name": "h", "factor": 2},
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "creases.creases": {"surface": ball},
+    "molecules.backbone": {"atoms": ball},
     "both_sides.both_sides": {"surface": ball, "names": ("a", "b")},
     "box_axes.box_axes": {"size": 10.0},
     "box_axes.captions": {"meshes": lambda: pv.MultiBlock({"a": ball()}), "size": 10.0},

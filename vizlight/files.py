@@ -46,6 +46,7 @@ from vizlight.mesh import (
     short_files,
 )
 from vizlight.mesh.creases import creases
+from vizlight.mesh.molecules import backbone
 from vizlight.mesh.polylines import by_end
 from vizlight.mesh.subdivision import by_corner, simplices
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
@@ -64,8 +65,8 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "FileError", "creases", "layer_of", "layers", "read", "read_parts", "stretched", "surface_of",
-    "warped", "with_vectors", "write_mesh",
+    "FileError", "backbone", "creases", "layer_of", "layers", "read", "read_parts", "stretched",
+    "surface_of", "warped", "with_vectors", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.
@@ -130,7 +131,7 @@ _SCENES = (".3mf", ".blend", ".dae", ".fbx", ".ifc", ".x3d")
 #: Files of CAD, whose surfaces have no points.
 _SHAPES = (".step", ".stp", ".iges", ".igs", ".brep")
 #: Molecules and tables that no reader takes.
-_MOLECULES = (".mol", ".mol2", ".sdf", ".cif", ".gro", ".pqr", ".fchk", ".molden")
+_MOLECULES = (".mol", ".mol2", ".sdf", ".gro", ".pqr", ".fchk", ".molden")
 _TABLES = (".csv", ".tsv", ".txt", ".xlsx", ".parquet", ".npy", ".npz")
 
 

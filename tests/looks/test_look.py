@@ -245,7 +245,7 @@ def test_bad_input(mesh, options, error, words):
 
 def test_every_rule_can_be_reached():
     shown = {(look[1], look[2]) for look in KINDS.values()}
-    shown |= {("shape", "isosurface"), ("value", "molecule")}
+    shown |= {("shape", "isosurface"), ("value", "molecule"), ("value", "backbone")}
     for rule in RULES:
         assert any(rule.shown == what for _, what in shown) or rule.shown == "hull"
 
@@ -268,8 +268,21 @@ def test_a_molecule_has_balls_for_its_atoms_and_sticks_between_them(tmp_path):
     assert np.isclose(far, 0.24, atol=1e-5).sum() > 2000
     # Each half of a stick has the colour of its own atom.
     assert far.max() < 0.5
-    assert look.drawing.keys[0]["title"] == "atom_type"
+    assert look.drawing.keys[0]["title"] == "element"
     assert vizlight.look(path, size=SIZE, array="radius").array == "radius"
+
+
+def test_a_molecule_of_long_chains_shows_its_backbone():
+    turn = np.linspace(0, 40, 61)
+    places = np.column_stack([3 * np.cos(turn), 3 * np.sin(turn), turn])
+    chain = pv.PolyData(np.concatenate([places, places + np.array([9, 0, 0])]))
+    chain["atom_type"], chain["radius"] = np.full(122, 6), np.full(122, 1.7)
+    chain["chain"] = np.repeat([0, 1], 61)
+    chain["backbone_mask"] = np.ones(122, np.uint8)
+    look = vizlight.look(chain, size=SIZE, array="chain")
+    assert (look.shown, look.mesh.n_lines) == ("backbone", 0)
+    assert look.mesh.bounds_size[0] == pytest.approx(9 + 6 + 1.6, abs=0.1)
+    assert "files.backbone(" in look.script()
 
 
 def test_a_part_with_most_points_on_its_surface_shows_values_there():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import vizlight
-from vizlight.mesh import meaning
+from vizlight.mesh import meaning, molecules
 
 ATOM = "ATOM  {:5d}  CA  GLY A{:4d}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00           C  \n"
 WATER = "3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n"
@@ -74,3 +74,97 @@ def test_damaged_molecules_are_refused(tmp_path, text, words):
 def test_points_without_elements_stay_a_scan(tmp_path):
     scan = vizlight.read(written(tmp_path, "0 0 0\n1 0 0\n0 1 0\n", "scan.xyz"))
     assert (scan.n_points, scan.n_lines) == (3, 0)
+
+
+def helix(count, chain):
+    """Return the lines of a chain of carbons 3.8 angstroms apart, with waters around them."""
+    turn = 100 * np.pi / 180 * np.arange(count)
+    places = np.column_stack([2.3 * np.cos(turn), 2.3 * np.sin(turn), 1.5 * np.arange(count)])
+    places[:, 0] += 20 * "AB".index(chain)
+    return [
+        ATOM.format(i + 1, i + 1, *place).replace(" A", f" {chain}", 1)
+        for i, place in enumerate(places.tolist())
+    ]
+
+
+def test_a_backbone_is_one_smooth_curve_for_each_piece_of_a_chain(tmp_path):
+    water = "HETATM   99  O   HOH A  99       9.000   9.000   9.000  1.00  0.00           O  \n"
+    lines = [*helix(40, "A"), water, *helix(40, "B")]
+    mesh = vizlight.read(written(tmp_path, "".join(lines), "two.pdb"))
+    assert mesh.active_scalars_name == "chain"
+    assert meaning.flags(mesh, "chain") == {0: "A", 1: "B"}
+    assert np.count_nonzero(mesh["backbone_mask"]) == 80
+    curves = molecules.backbone(mesh)
+    assert (curves.n_lines, {*curves["chain"]}) == (2, {0, 1})
+    # Beside the ends, a curve through points of a helix has its radius.
+    ends = curves.points - [0, 0, 0]
+    inner = (curves["chain"] == 0) & (curves["residue"] > 3) & (curves["residue"] < 37)
+    np.testing.assert_allclose(np.hypot(*ends[inner, :2].T), 2.3, atol=0.15)
+    assert np.linalg.norm(np.diff(curves.points[inner], axis=0), axis=1).max() < 0.9
+    del lines[20:23]
+    gap = molecules.backbone(vizlight.read(written(tmp_path, "".join(lines), "gap.pdb")))
+    assert gap.n_lines == 3
+    one = vizlight.read(written(tmp_path, "".join(helix(70, "A")), "one.pdb"))
+    assert one.active_scalars_name == "residue"
+
+
+def test_a_backbone_needs_a_molecule_of_residues(tmp_path):
+    water = vizlight.read(written(tmp_path, WATER, "water.xyz"))
+    with pytest.raises(ValueError, match="atoms: expected a molecule of a PDB or CIF file"):
+        molecules.backbone(water)
+    with pytest.raises(TypeError, match="atoms: expected a pyvista.PolyData"):
+        molecules.backbone("1abc.pdb")
+
+
+CRYSTAL = """data_salt
+_cell_length_a 4
+_cell_length_b 4
+_cell_length_c 4
+_cell_angle_alpha 90
+_cell_angle_beta 90
+_cell_angle_gamma 90
+_space_group_name_H-M_alt 'P m -3 m'
+loop_
+_atom_site_label
+_atom_site_type_symbol
+_atom_site_fract_x
+_atom_site_fract_y
+_atom_site_fract_z
+_atom_site_occupancy
+"""
+
+
+def test_a_crystal_has_its_atoms_in_all_places_of_its_cell(tmp_path):
+    """A caesium on the corner is on eight, a chlorine in the middle on one."""
+    pytest.importorskip("gemmi")
+    text = f"{CRYSTAL}Rb1 Rb 0 0 0 0.1\nCs1 Cs 0 0 0 0.9\nCl1 Cl 0.5 0.5 0.5 1\n"
+    mesh = vizlight.read(written(tmp_path, text, "salt.cif"))
+    assert sorted(mesh["atom_type"].tolist()) == [17] + 8 * [55]
+    corners = mesh.points[mesh["atom_type"] == 55]
+    assert sorted(map(tuple, corners.tolist())) == [
+        (x, y, z) for x in (0, 4) for y in (0, 4) for z in (0, 4)
+    ]
+    np.testing.assert_allclose(mesh.points[mesh["atom_type"] == 17], [[2, 2, 2]])
+
+
+def test_a_macromolecule_of_cif_is_that_of_pdb(tmp_path):
+    gemmi = pytest.importorskip("gemmi")
+    path = written(tmp_path, "".join([*helix(40, "A"), *helix(40, "B")]), "two.pdb")
+    of_pdb = vizlight.read(path)
+    document = gemmi.read_pdb(str(path)).make_mmcif_document()
+    document.write_file(str(tmp_path / "two.cif"))
+    of_cif = vizlight.read(tmp_path / "two.cif")
+    np.testing.assert_allclose(of_cif.points, of_pdb.points, atol=1e-3)
+    assert {*of_cif.point_data.keys()} == {*of_pdb.point_data.keys()}
+    for name in ("atom_type", "residue", "chain", "backbone_mask"):
+        np.testing.assert_array_equal(of_cif[name], of_pdb[name])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("data_a\n_cell_length_a 4\n", "no atoms"), ("loop_ 'x", r"line 1.*block header")],
+)
+def test_a_cif_without_atoms_is_refused(tmp_path, text, said):
+    pytest.importorskip("gemmi")
+    with pytest.raises(vizlight.files.FileError, match=said):
+        vizlight.read(written(tmp_path, text, "a.cif"))

@@ -52,9 +52,9 @@ _TABLE_WORDS = {
 _TABLES = {"TANGENT", "arc_length", "gmsh:bounding_entities", "gmsh:dim_tags"}
 #: Words in the names of kinds, whose numbers may be many.
 _KIND_WORDS = {
-    "block", "body", "class", "classes", "domain", "group", "groups", "label", "labels", "layer",
-    "mat", "material", "materials", "part", "parts", "phase", "region", "regions", "segment",
-    "zone",
+    "block", "body", "chain", "class", "classes", "domain", "group", "groups", "label", "labels",
+    "layer", "mat", "material", "materials", "part", "parts", "phase", "region", "regions",
+    "segment", "zone",
 }  # fmt: skip
 #: Words in the names of colours.
 _COLOR_WORDS = {"rgb", "color", "colors", "colour", "colours"}
@@ -222,7 +222,7 @@ def says_heights(mesh: pv.DataSet, name: str) -> bool:
 def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...]:
     """Return the arrays that are data, the best for a picture first.
 
-    The active array comes first, of kinds if these have colours of their own, then numbers in
+    The active array comes first, of kinds if these have names, then numbers in
     floating point, those of points before those of
     cells, those that describe the grid of a model last; then kinds, those of cells first, which are
     materials more often than those of points; each in the order of the mesh. Arrays made by filters
@@ -270,8 +270,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     of_file = meaning.MEANING in mesh.field_data
 
     def rank(array: Named) -> tuple[bool, bool, bool, bool]:
-        # An active array of kinds with colours of their own, such as elements, is the best.
-        own = array.name in active and bool(meaning.flags(mesh, array.name, "colors"))
+        # An active array of kinds with names, such as elements, is the best.
+        own = array.name in active and bool(meaning.flags(mesh, array.name))
         kinds = array.role == "kinds" and not own
         words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
         static = of_file and _OF_GRID.search(words) is not None

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vizlight.looks.recipes import fields, lines, reliefs, surfaces, volumes
-from vizlight.mesh import globes
+from vizlight.mesh import globes, molecules
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
@@ -64,6 +64,10 @@ def _is_molecule(contents: Contents) -> bool:
     return lines.is_molecule(contents.mesh)
 
 
+def _is_polymer(contents: Contents) -> bool:
+    return molecules.is_polymer(contents.mesh)
+
+
 def _is_points(contents: Contents) -> bool:
     return contents.dimension == 0
 
@@ -100,6 +104,8 @@ def _is_loaded(contents: Contents) -> bool:
 
 #: The table. Of a question that is given, the first row with that question counts.
 RULES = (
+    Rule("backbone", _is_polymer, "value", ("kinds", "values"), lines.backbone,
+         "a molecule of long chains"),
     Rule("molecule", _is_molecule, "value", ("kinds", "values"), lines.molecule, "a molecule"),
     Rule("lines", _is_lines, "value", ("values", "kinds"), lines.lines, "lines with values"),
     Rule("lines", _is_lines, "heading", (), lines.lines, "lines"),

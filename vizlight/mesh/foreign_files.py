@@ -19,6 +19,7 @@ from vizlight.mesh import (
     abaqus,
     brains,
     cf_grids,
+    density_maps,
     geomview,
     georeference,
     meaning,
@@ -51,7 +52,10 @@ PACKAGES = {
     ".img": ("nibabel", "tracts"),
     ".las": ("laspy", "formats"),
     ".laz": ("laspy", "formats"),
-} | dict.fromkeys(cf_grids.NETCDF, ("xarray", "formats")) | dict.fromkeys(
+    ".cif": ("gemmi", "formats"),
+} | dict.fromkeys(density_maps.SUFFIXES, ("gemmi", "formats")) | dict.fromkeys(
+    cf_grids.NETCDF, ("xarray", "formats")
+) | dict.fromkeys(
     cf_grids.GRIB, ("cfgrib", "")
 ) | dict.fromkeys(cf_grids.ZARR, ("zarr", "")) | dict.fromkeys(
     (
@@ -526,7 +530,9 @@ def _attach(data: pv.DataSetAttributes, name: object, array: Raw) -> None:
 _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = {
     ".trk": _tracts, ".tck": _tracts, ".trx": _tracts_of_trx, ".pts": _scan, ".xyz": _scan,
     ".las": _lidar, ".laz": _lidar, ".obj": _wavefront, ".off": geomview.read_off,
-    ".pdb": molecules.of_pdb, ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
+    ".pdb": molecules.of_pdb, ".ent": molecules.of_pdb, ".cif": molecules.of_cif,
+    ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
+    **dict.fromkeys(density_maps.SUFFIXES, density_maps.read),
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
     **dict.fromkeys(tetgen.SUFFIXES, tetgen.read),
 }  # fmt: skip

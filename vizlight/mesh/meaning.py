@@ -83,15 +83,17 @@ class Meaning:
             self.arrays[name] = kept
 
     def add_kinds(self, name: str, kinds: Sequence[tuple[int, str, Sequence[float]]]) -> None:
-        """Keep the number, the name, and the red, green and blue from 0 to 1, of kinds."""
+        """Keep the number, the name, and the red, green and blue from 0 to 1, if any, of kinds."""
         pairs = [(number, re.sub(r"\s+", "_", text)) for number, text, _ in kinds if text]
         hues = [
             (number, "".join(f"{round(255 * part):02x}" for part in color[:3]))
             for number, _, color in kinds
+            if len(color)
         ]
         of_array = self.arrays.setdefault(name, {})
         of_array["flags"] = " ".join(itertools.starmap("{}:{}".format, pairs))
-        of_array["colors"] = " ".join(itertools.starmap("{}:#{}".format, hues))
+        if hues:
+            of_array["colors"] = " ".join(itertools.starmap("{}:#{}".format, hues))
 
 
 def flags(mesh: pv.DataSet, name: str, key: str = "flags") -> dict[float, str]:

@@ -1,4 +1,4 @@
-"""Molecules of PDB and XYZ files: one state of their atoms, joined by bonds."""
+"""Molecules and crystals of PDB, CIF and XYZ files: one state of their atoms, joined by bonds."""
 
 from __future__ import annotations
 
@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkMolecule
+from vtkmodules.vtkFiltersGeneral import vtkSplineFilter
 
 from vizlight import _check
-from vizlight.mesh import meaning, short_files
+from vizlight.mesh import meaning, polylines, short_files
 from vizlight.model import formulas
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
+
+    from vizlight._types import Foreign
 
 #: Largest luma of the colour of an element.
 PALE = 0.7
@@ -25,6 +28,16 @@ _PLACE = re.compile(r"\s*[+-]?\d+\.?\d*\s*")
 _SYMBOL = re.compile(r"[A-Za-z]{1,3}\d*$")
 #: Point arrays of a PDB file: their columns, and what stands for none.
 _NUMBERS = {"residue": (22, 26, 0), "occupancy": (54, 60, 1.0), "b_factor": (60, 66, 0.0)}
+#: Name of their marks, and number of them from which a molecule is a long chain.
+BACKBONE, LONG = "backbone_mask", 60
+#: Largest distance in angstroms of two that follow each other, in proteins and in nucleic acids.
+_APART = {6: 4.5, 15: 9.0}
+#: Steps of curves through few and through many of them, in angstroms, and what is many.
+_FINE, _COARSE, MANY = 0.6, 1.9, 5000
+#: Share of an edge of a cell up to which places are one.
+ROUNDED = 1e-3
+#: Names and elements of the atoms that stand for a residue of a protein and of a nucleic acid.
+_BACKBONE = {("CA", "C"), ("P", "P")}
 
 
 def of_pdb(path: Path) -> pv.PolyData:
@@ -42,8 +55,9 @@ def of_pdb(path: Path) -> pv.PolyData:
     -------
     pyvista.PolyData
         Bonds, and points of atoms without any, with ``atom_type``, the atomic number, ``radius``,
-        that of van der Waals, ``residue``, ``chain``, ``occupancy`` and ``b_factor``. Of atoms with
-        several places the first is taken.
+        that of van der Waals, ``residue``, ``chain``, ``occupancy``, ``b_factor`` and
+        ``backbone_mask``, 1 for the atom that stands for a residue. Of atoms with several places
+        the first is taken.
 
     Raises
     ------
@@ -70,16 +84,164 @@ def of_pdb(path: Path) -> pv.PolyData:
             places.append([float(column) for column in columns])
     if not atoms:
         raise ValueError("it has no atoms")
-    mesh = _joined([_element(line) for line in atoms], places)
+    elements = [_element(line) for line in atoms]
+    mesh = _joined(elements, places)
     for name, (first, last, none) in _NUMBERS.items():
         words = [line[first:last].strip() for line in atoms]
         try:
             mesh.point_data[name] = [type(none)(word) if word else none for word in words]
         except ValueError:
             continue  # numbers of residues may have letters
-    chains = sorted({line[21:22] for line in atoms})
-    mesh.point_data["chain"] = [chains.index(line[21:22]) for line in atoms]
+    names = [line[12:16] for line in atoms]
+    # A calcium ion has its name one column before that of a carbon.
+    _attach_chains(
+        mesh, [line[21:22] for line in atoms],
+        [(name[1:].strip() if name[:1] == " " else name, each.upper())
+         for name, each in zip(names, elements, strict=True)],
+    )  # fmt: skip
     return mesh
+
+
+def of_cif(path: Path) -> pv.PolyData:
+    """Return the atoms of a CIF file: of the first model of a macromolecule, or of a unit cell.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file, which gemmi reads.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Bonds and atoms as of :func:`of_pdb`; those of a crystal, in all places of its cell by its
+        symmetry, with ``occupancy`` alone. Of elements that share a place the most frequent counts.
+
+    Raises
+    ------
+    ValueError
+        If it is no CIF, or has no atoms.
+    """
+    import gemmi
+
+    try:
+        document: Foreign = gemmi.cif.read(str(path))
+        block = next((each for each in document if len(each.find_loop("_atom_site.id"))), None)
+        structure = None if block is None else gemmi.make_structure_from_block(block)
+        crystals = [gemmi.make_small_structure_from_block(each) for each in document]
+    except (RuntimeError, ValueError) as error:
+        raise ValueError(str(error).replace(f"{path}:", "line ").strip()) from None
+    if structure is not None:
+        return _macromolecule(structure, path)
+    crystal = next((each for each in crystals if len(each.sites)), None)
+    if crystal is None:
+        raise ValueError("it has no atoms")
+    sites = sorted(crystal.get_all_unit_cell_sites(), key=lambda site: -float(site.occ))
+    shares = np.array([site.fract.tolist() for site in sites]) % 1
+    # Numbers such as 0.3333 are rounded; what lies on a side of the cell lies on the other, too.
+    shares[shares > 1 - ROUNDED] -= 1
+    _, first = np.unique(np.rint(shares / ROUNDED), axis=0, return_index=True)
+    rows, shares = first, shares[first]
+    for axis in range(3):
+        low = np.abs(shares[:, axis]) <= ROUNDED
+        rows = np.concatenate([rows, rows[low]])
+        shares = np.concatenate([shares, shares[low] + np.eye(3)[axis]])
+    edges = np.array(crystal.cell.orth.mat.tolist())
+    mesh = _joined([sites[row].element.name for row in rows], (shares @ edges.T).tolist())
+    mesh.point_data["occupancy"] = [sites[row].occ for row in rows]
+    return mesh
+
+
+def _macromolecule(structure: Foreign, path: Path) -> pv.PolyData:
+    """Return the atoms of the first model of a structure of gemmi."""
+    if not len(structure):
+        raise ValueError("it has no atoms")
+    if len(structure) > 1:
+        _warn_of_states(path, len(structure))
+    rows = [
+        (chain.name, residue.seqid.num, atom)
+        for chain in structure[0]
+        for residue in chain
+        for atom in residue
+        if atom.altloc in ("\0", "A", "1")
+    ]
+    elements = [atom.element.name for _, _, atom in rows]
+    mesh = _joined(elements, [atom.pos.tolist() for _, _, atom in rows])
+    mesh.point_data["residue"] = [number for _, number, _ in rows]
+    mesh.point_data["occupancy"] = [atom.occ for _, _, atom in rows]
+    mesh.point_data["b_factor"] = [atom.b_iso for _, _, atom in rows]
+    names = [(atom.name, atom.element.name.upper()) for _, _, atom in rows]
+    _attach_chains(mesh, [name for name, _, _ in rows], names)
+    return mesh
+
+
+def _attach_chains(
+    mesh: pv.PolyData, chains: Sequence[str], names: Sequence[tuple[str, str]]
+) -> None:
+    """Attach the numbers of chains, with their names, and marks of the atoms of backbones."""
+    every = sorted({*chains})
+    number = {name: i for i, name in enumerate(every)}
+    mesh.point_data["chain"] = [number[name] for name in chains]
+    mesh.point_data[BACKBONE] = np.array([name in _BACKBONE for name in names], dtype=np.uint8)
+    said = meaning.of(mesh)
+    said.add_kinds("chain", [(i, name.strip(), ()) for i, name in enumerate(every)])
+    meaning.attach(mesh, said)
+    if is_polymer(mesh):
+        # Among thousands of atoms elements tell nothing of the fold.
+        mesh.set_active_scalars("chain" if len(every) > 1 else "residue")
+
+
+def is_polymer(mesh: pv.DataSet) -> bool:
+    """Return whether a mesh is a molecule with long chains of residues."""
+    marks = mesh.point_data.get(BACKBONE)
+    return marks is not None and int(np.count_nonzero(marks)) >= LONG
+
+
+def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
+    """Return the backbones of the chains of a molecule as smooth curves.
+
+    Parameters
+    ----------
+    atoms : pyvista.PolyData
+        Molecule as :func:`vizlight.read` reads it from a PDB or CIF file, which is not changed.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Curves through the carbon of each amino acid, or the phosphorus of each nucleotide, with the
+        arrays of these atoms, interpolated. They end where the next is more than 4.5, or 9,
+        angstroms away.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no such molecule.
+    """
+    if not isinstance(atoms, pv.PolyData):
+        raise TypeError(_check.message("atoms", "a pyvista.PolyData", _check.describe(atoms)))
+    for name in (BACKBONE, "chain", "atom_type"):
+        rows = atoms.point_data.get(name)
+        if rows is None or rows.ndim != 1:
+            expected = f"a molecule of a PDB or CIF file, with the point array {name!r}"
+            raise ValueError(_check.message("atoms", expected, f"arrays {atoms.point_data.keys()}"))
+    marked = np.flatnonzero(atoms.point_data[BACKBONE])
+    places = np.asarray(atoms.points, dtype=np.float64)[marked]
+    chains, kinds = (np.asarray(atoms.point_data[name])[marked] for name in ("chain", "atom_type"))
+    most = np.select([kinds == kind for kind in _APART], list(_APART.values()), 0.0)
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    apart = (np.diff(chains) != 0) | (np.diff(kinds) != 0) | (steps > most[:-1])
+    ends = np.concatenate([[0], np.flatnonzero(apart) + 1, [len(marked)]])
+    lines = polylines.polydata(places, ends[: len(marked) + 1])
+    for name, rows in atoms.point_data.items():
+        if name != BACKBONE:
+            lines.point_data[name] = np.asarray(rows)[marked]
+    curves = vtkSplineFilter()
+    curves.SetInputData(lines)
+    curves.SetSubdivideToLength()
+    curves.SetLength(_FINE if len(marked) < MANY else _COARSE)
+    curves.Update()
+    smooth: pv.PolyData = pv.wrap(curves.GetOutput())
+    smooth.GetFieldData().ShallowCopy(atoms.GetFieldData())
+    return smooth
 
 
 def _element(line: str) -> str:
@@ -158,6 +320,9 @@ def _joined(elements: Sequence[str], places: Sequence[Sequence[float]]) -> pv.Po
     drawn.Update()
     lines = pv.wrap(drawn.GetOutput()).lines
     alone = np.setdiff1d(np.arange(len(places)), lines.reshape(-1, 3)[:, 1:])
+    if len(alone) > len(places) / 2:
+        # Beads of a coarse model, or one atom of each residue, that meet by chance.
+        alone, lines = np.arange(len(places)), lines[:0]
     mesh = pv.PolyData(
         np.array(places), lines=lines, verts=np.column_stack([np.ones_like(alone), alone])
     )
@@ -175,6 +340,7 @@ def _joined(elements: Sequence[str], places: Sequence[Sequence[float]]) -> pv.Po
         kinds.append((number, table.GetSymbol(number), paler))
     said = meaning.Meaning()
     said.add_kinds("atom_type", kinds)
+    said.arrays["atom_type"]["long_name"] = "element"
     meaning.attach(mesh, said)
     return mesh
 

@@ -47,6 +47,8 @@ ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
 #: Most atoms of a molecule that are balls, their size in radii of van der Waals, and the sticks
 #: between them, in angstroms.
 MOST_BALLS, BALL, STICK = 1000, 0.2, {"radius": 0.1, "n_sides": 20}
+#: Tubes along backbones, in angstroms.
+TUBE = {"radius": 0.8, "n_sides": 12}
 #: Atoms up to whose number balls are large in a picture, and as much finer.
 FEW_BALLS, FINER = 60, 3
 #: Size in pixels of balls up to which they are squares on a map.
@@ -116,6 +118,18 @@ def molecule(case: Case) -> Drawing:
         stick = STICK | {"n_sides": STICK["n_sides"] * finer}
         solid = Step("molecule", ".append_polydata", balls, Step("", ".tube", bonds, **stick))
     return surfaces.values(replace(case, data=solid, contents=Contents(solid.run())))
+
+
+def backbone(case: Case) -> Drawing:
+    """Draw the chains of a molecule as tubes along their backbones, in the colours of values."""
+    if case.needed_array.name in ("atom_type", "radius"):
+        # Of these the atoms beside the backbone have others.
+        return lines(case)
+    curves = Step("backbone", "files.backbone", case.data)
+    solid = Step("chains", ".tube", curves, **TUBE)
+    drawing = surfaces.values(replace(case, data=solid, contents=Contents(solid.run())))
+    words = f"backbone in the colours of {case.needed_array.name}"
+    return replace(drawing, words=words)
 
 
 def _width(case: Case) -> float:
