@@ -46,6 +46,7 @@ from vizlight.mesh import (
     short_files,
 )
 from vizlight.mesh.creases import creases
+from vizlight.mesh.fills import without_fills
 from vizlight.mesh.polylines import by_end
 from vizlight.mesh.subdivision import by_corner, simplices
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
@@ -65,7 +66,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FileError", "creases", "layer_of", "layers", "read", "read_parts", "stretched", "surface_of",
-    "warped", "with_vectors", "write_mesh",
+    "warped", "with_vectors", "without_fills", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.

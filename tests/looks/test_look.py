@@ -102,7 +102,7 @@ def test_the_data_choose(kind):
     assert (look.question, look.shown, look.array) == (question, shown, array)
     assert look.reason
     assert mesh.array_names == names
-    assert str(look).count("\n") == 2
+    assert str(look).count("\n") == 2 + len(look.notes)
     assert all(other.array != look.array for other in look.others)
 
 

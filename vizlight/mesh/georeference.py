@@ -11,7 +11,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import blocks, composites, meaning
+from vizlight.mesh import blocks, composites, fills, meaning
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -356,7 +356,7 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
     path : pathlib.Path
         Path of the file.
     nodata : float, optional
-        Value that stands for none, as for :func:`.meaning.without_missing`.
+        Value that stands for none, as for :func:`.fills.without_missing`.
 
     Returns
     -------
@@ -387,7 +387,7 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         # Heights without a unit on a map are taken for metres, as lengths are.
         metres = "m" if name == "elevation" and crs is not None else None
         said.add_array(name, {"units": units.get(name) or metres})
-        arrays[name], missing = meaning.without_missing(name, rows, nodata)
+        arrays[name], missing = fills.without_missing(name, rows, nodata)
         words += [missing] if missing else []
     arrays = _colored(arrays, kinds, said)
     for name, rows in arrays.items():
@@ -395,9 +395,7 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         shape = (grid.n_points, *rows.shape[2:])
         grid.point_data[name] = np.ascontiguousarray(rows[turned]).reshape(shape)
     grid.set_active_scalars(next(iter(arrays)))
-    if words:
-        meaning.say(path, words)
-        said.notes += words
+    said.notes += fills.say(path, words)
     if crs is not None:
         # PyVista keeps words in ASCII alone; other letters stand in names, which mean nothing.
         grid.field_data["crs"] = [crs.to_wkt().encode("ascii", "replace").decode("ascii")]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import json
-import math
 import re
 from collections import Counter
 from dataclasses import asdict, dataclass, field
@@ -26,8 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ANATOMY", "MEANING", "Meaning", "along_grid", "attach", "components", "is_of_sea", "line",
-    "metres", "of", "only_vectors", "say", "speed", "usual_unit", "vectors", "ways", "with_named",
-    "without_missing",
+    "metres", "of", "only_vectors", "speed", "usual_unit", "vectors", "ways", "with_named",
 ]  # fmt: skip
 
 #: Most distinct values of an array of kinds, such as materials or labels.
@@ -580,101 +578,3 @@ def along_grid(attributes: Mapping[str, str]) -> bool | None:
     if re.search(r"(?<![a-z])[xyij][_ -]|grid|_i_|_j_", words):
         return True
     return False if re.search(r"east|north|zonal|meridional", words) else None
-
-
-#: Values that stand for none in files that do not say so, beside those whose digits are all 9.
-_LIMITS = {-(2.0**15), 1 - 2.0**15, 2.0**15 - 1, 2.0**16 - 1, -(2.0**31), 2.0**31 - 1}
-#: Least size of a value that is none, as 1e20, 9.97e36 and 3.4e38 are.
-_HUGE = 1e15
-
-
-def _seems_missing(value: float) -> bool:
-    """Return whether a number is one of those that stand for none."""
-    if value in _LIMITS or abs(value) >= _HUGE:
-        return True
-    # Of -9.99e8, too, and of none below 1.
-    digits = f"{abs(value):.6g}".partition("e+")[0].replace(".", "")
-    # 99 may be a number of percents.
-    return len(digits) > (1 if value < 0 else 2) and set(digits) == {"9"}
-
-
-def without_missing(name: str, values: Raw, nodata: float | None = None) -> tuple[Raw, str]:
-    """Return values with NaN where they are missing though the file does not say so.
-
-    One value far outside of all others, repeated, that is usual for this: -9999, -32768, 32767,
-    1e20, -3.4e38 and the like.
-
-    Parameters
-    ----------
-    name : str
-        Name of the array, for the words.
-    values : ndarray
-        Values, NaN where they are known to be missing.
-    nodata : float, optional
-        Value that stands for none, in place of the search; NaN for no further one.
-
-    Returns
-    -------
-    ndarray
-        The values themselves where none is missing, else a copy in floating point.
-    str
-        Words with the value and its share.
-    """
-    if values.dtype.kind not in "iuf" or not values.size:
-        return values, ""
-    finite: Raw = values[np.isfinite(values)] if values.dtype.kind == "f" else values.ravel()
-    missing = [nodata] if nodata is not None else _outliers(finite)
-    words = []
-    for value in missing:
-        if value is None or math.isnan(value):
-            continue
-        # Floating-point numbers are rounded to the type of the values.
-        at = np.isclose(values.astype(np.float64), value, rtol=1e-6, atol=0)
-        if not at.any():
-            continue
-        if values.dtype.kind != "f":
-            values = values.astype(np.float32 if values.dtype.itemsize <= 2 else np.float64)
-        values = np.where(at, np.nan, values).astype(values.dtype)
-        share = at.mean()
-        words.append(f"{100 * share:.2g} % of {name!r} are {value:g}")
-    return values, " and ".join(words)
-
-
-def _outliers(finite: Raw) -> list[float]:
-    """Return the values at the ends of all others that stand for none."""
-    result: list[float] = []
-    rest = finite
-    for _ in range(2):
-        if not rest.size:
-            break
-        for end in (float(rest.min()), float(rest.max())):
-            if not _seems_missing(end):
-                continue
-            inner = rest[rest != end]
-            if not inner.size:
-                continue
-            low, high = float(inner.min()), float(inner.max())
-            gap = low - end if end < low else end - high
-            # A single pixel may be a fault of its own, and is seen to be one where it is huge.
-            repeated = rest.size - inner.size > 1 or abs(end) >= _HUGE
-            if repeated and gap > max(high - low, abs(end) / 2):
-                result.append(end)
-                rest = inner
-    return result
-
-
-def say(path: object, words: Sequence[str]) -> None:
-    """Warn of values that were taken for missing.
-
-    Parameters
-    ----------
-    path : path
-        Path of the file.
-    words : sequence of str
-        Words of :func:`without_missing`.
-    """
-    if words:
-        _check.warn(
-            f"file: '{path}': {'; '.join(words)}, far from all other values: they are taken for "
-            "missing; pass nodata= to name the value, nodata=nan to keep all"
-        )
