@@ -292,6 +292,8 @@ def _read(
                 meshes = [block for block in blocks.all_blocks(data) if block.n_points]
             else:
                 meshes = _meshes(data, path, overlays, time, notes, whole=whole)
+                for mesh in meshes:
+                    meaning.name_by_file(mesh, path)
         except series.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type

@@ -455,3 +455,10 @@ def test_points_of_a_surface_close_it_and_those_in_a_volume_do_not_hide_each_oth
     # 2000 points on a ball some 300 pixels wide are 12 pixels apart, those in front of it.
     assert 10 < sizes[0] < 20
     assert sizes[1] < 6
+
+
+def test_a_title_is_the_name_of_a_file_and_no_word_of_a_reader(tmp_path):
+    mesh = ball(ImageScalars=lambda x, y, z: z)
+    mesh.save(tmp_path / "heart.vtp")
+    titles = [vizlight.look(of).drawing.keys[0]["title"] for of in (tmp_path / "heart.vtp", mesh)]
+    assert titles == ["heart", "values"]

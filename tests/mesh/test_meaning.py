@@ -1,5 +1,7 @@
 """What arrays mean: components of vectors, and the words of files."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -179,3 +181,16 @@ def test_pressures_of_air_have_a_usual_unit(standard, unit, size, expected):
 )
 def test_the_unit_of_a_speed_in_metres_a_second(unit, size):
     assert meaning.speed(mesh_with("u", "v", units=unit), "u,v") == pytest.approx(size)
+
+
+@pytest.mark.parametrize(("name", "title"), [
+    ("ImageFile", "heart"), ("ImageScalars", "heart"), ("DICOMImage", "heart"),
+    ("scalars", "heart"), ("Scalars_", "heart"), ("temperature", None),
+])  # fmt: skip
+def test_a_word_of_a_reader_is_no_title(name, title):
+    mesh = mesh_with(name)
+    meaning.name_by_file(mesh, Path("heart.nii.gz"))
+    assert meaning.of(mesh).arrays.get(name, {}).get("long_name") == title
+    several = mesh_with(name, "values")
+    meaning.name_by_file(several, Path("heart.vtk"))
+    assert "long_name" not in meaning.of(several).arrays.get(name, {})

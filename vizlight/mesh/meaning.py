@@ -17,6 +17,7 @@ from vizlight.vtk.arrays import stacked
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
 
     import pyvista as pv
 
@@ -90,6 +91,29 @@ class Meaning:
         of_array = self.arrays.setdefault(name, {})
         of_array["flags"] = " ".join(itertools.starmap("{}:{}".format, pairs))
         of_array["colors"] = " ".join(itertools.starmap("{}:#{}".format, hues))
+
+
+#: Names that readers and programs give to an array without one, in lower case.
+_OF_READERS = re.compile(
+    r"\w*image([ _]?(file|scalars|data))?|(\w+ )?scalars_?|minc|mgh|afni|nifti|values|data"
+    r"|__xarray_dataarray_variable__"
+)
+
+
+def is_of_reader(name: str) -> bool:
+    """Return whether the name of an array is a word of a reader, such as ``ImageScalars``."""
+    return _OF_READERS.fullmatch(name.lower()) is not None
+
+
+def name_by_file(mesh: pv.DataSet, path: Path) -> None:
+    """Keep the name of a file as the title of the only array that has a name of its reader."""
+    names = [name for data in (mesh.point_data, mesh.cell_data) for name in data]
+    names = [name for name in names if is_of_reader(name)]
+    said = of(mesh)
+    attributes = said.arrays.setdefault(names[0], {}) if len(names) == 1 else {"long_name": ""}
+    if "long_name" not in attributes and "standard_name" not in attributes:
+        attributes["long_name"] = path.name.partition(".")[0]
+        attach(mesh, said)
 
 
 def flags(mesh: pv.DataSet, name: str, key: str = "flags") -> dict[float, str]:

@@ -572,7 +572,8 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False) -> str:
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     word, of_brains = brains.MEASURES.get(name, ("", "")) if brains.hemisphere(mesh) else ("", "")
     unit = attributes.get("units", "").strip() or of_brains
-    title = attributes.get("long_name") or attributes.get("standard_name") or word or name
+    title = attributes.get("long_name") or attributes.get("standard_name") or word
+    title = title or ("values" if meaning.is_of_reader(name) else name)
     if "," in name:
         title = _in_common(mesh, name.split(",")) or name
     if series.TIME in mesh.field_data:
