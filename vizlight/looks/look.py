@@ -455,6 +455,7 @@ def decide(data: object, wishes: Wishes) -> Look:
     if len(ready) == 1:
         ((step, contents, notes),) = ready
         step, contents = look_options.charted(step, contents, wishes)
+        step, contents = look_options.laid_flat(step, contents, wishes)
         rule, case = _chosen(step, contents, wishes)
         wide = replace(case, wishes=replace(wishes, wide=case.is_wide))
         return _decided(rule, wide, notes)
