@@ -46,6 +46,7 @@ from vizlight.mesh import (
     short_files,
 )
 from vizlight.mesh.creases import creases
+from vizlight.mesh.fills import without_fills
 from vizlight.mesh.molecules import backbone
 from vizlight.mesh.polylines import by_end
 from vizlight.mesh.subdivision import by_corner, simplices
@@ -66,7 +67,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FileError", "backbone", "creases", "layer_of", "layers", "read", "read_parts", "stretched",
-    "surface_of", "warped", "with_vectors", "write_mesh",
+    "surface_of", "warped", "with_vectors", "without_fills", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.
@@ -292,6 +293,8 @@ def _read(
                 meshes = [block for block in blocks.all_blocks(data) if block.n_points]
             else:
                 meshes = _meshes(data, path, overlays, time, notes, whole=whole)
+                for mesh in meshes:
+                    meaning.name_by_file(mesh, path)
         except series.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type

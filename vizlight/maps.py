@@ -173,7 +173,7 @@ colormaps.register(_AMOUNTS, force=True)
 _FINE = 1024
 #: Share of the larger of the ends below and above 0 from which on the smaller makes a map of two
 #: sides.
-_TWO_SIDED = 0.4
+TWO_SIDED = 0.4
 
 
 def bands(
@@ -233,7 +233,7 @@ def bands(
     if logarithmic:
         edges, (low, high) = np.log(edges), np.log(ends)
     start, end = low, high
-    if not logarithmic and min(-low, high) >= _TWO_SIDED * max(-low, high):
+    if not logarithmic and min(-low, high) >= TWO_SIDED * max(-low, high):
         start, end = -max(-low, high), max(-low, high)
     # The middles of the steps of the table.
     values = low + (high - low) * (np.arange(_FINE) + 0.5) / _FINE

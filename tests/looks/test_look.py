@@ -102,7 +102,7 @@ def test_the_data_choose(kind):
     assert (look.question, look.shown, look.array) == (question, shown, array)
     assert look.reason
     assert mesh.array_names == names
-    assert str(look).count("\n") == 2
+    assert str(look).count("\n") == 2 + len(look.notes)
     assert all(other.array != look.array for other in look.others)
 
 
@@ -468,3 +468,23 @@ def test_points_of_a_surface_close_it_and_those_in_a_volume_do_not_hide_each_oth
     # 2000 points on a ball some 300 pixels wide are 12 pixels apart, those in front of it.
     assert 10 < sizes[0] < 20
     assert sizes[1] < 6
+
+
+def test_a_title_is_the_name_of_a_file_and_no_word_of_a_reader(tmp_path):
+    mesh = ball(ImageScalars=lambda x, y, z: z)
+    mesh.save(tmp_path / "heart.vtp")
+    titles = [vizlight.look(of).drawing.keys[0]["title"] for of in (tmp_path / "heart.vtp", mesh)]
+    assert titles == ["heart", "values"]
+
+
+def test_the_neutral_colour_of_signed_values_is_at_0():
+    mesh = ball(stress=lambda x, y, z: np.where(z > 0, 2, 1) * z, height=lambda x, y, z: 2 + z)
+    for options, name, ends in (
+        ({}, "vizlight.bands", (-1, 1)),
+        ({"clim": (-3, 3)}, "vizlight.bands", (-3, 3)),
+        ({"clim": (-1, 3)}, "vizlight.surface", (-1, 3)),
+        ({"cmap": "RdBu"}, "RdBu", (-1, 1)),
+        ({"array": "height"}, "vizlight.surface", (1.5, 2.5)),
+    ):
+        (key,) = vizlight.look(mesh, **options).drawing.keys
+        assert (key["cmap"], key["clim"]) == (name, ends)

@@ -72,3 +72,17 @@ def test_amounts_that_are_mostly_none_have_a_ground():
     # Rounding below 0 changes nothing, and what is nowhere 0 has no ground.
     assert range_shown(np.append(rain, -1e-9), amounts=True).ground
     assert not range_shown(ice + 0.1, amounts=True).ground
+
+
+def test_values_on_both_sides_of_0_have_it_in_their_middle():
+    values = np.linspace(-1.0, 2.0, 100)
+    shown = range_shown(values)
+    assert shown.is_signed
+    assert shown.around_zero(values) == Range(-2, 2)
+    assert not range_shown(np.linspace(-0.5, 2, 100)).is_signed
+    assert not range_shown(values[values > 0]).is_signed
+    # Beyond the ends that were clipped there may be none now.
+    outside = np.concatenate([RANDOM.normal(size=4000), [-50.0], np.full(20, 6.0)])
+    around = range_shown(outside).around_zero(outside)
+    assert around.low == -around.high
+    assert around.clipped == (True, outside.max() > around.high)

@@ -87,6 +87,17 @@ def test_bands_and_colours_have_their_names(tmp_path):
     assert picture["rgb"].shape == (800, 3)
 
 
+def test_bands_of_a_satellite_are_a_picture_beside_themselves(tmp_path):
+    names = ["B02", "B03", "B04", "B08"]
+    path = written(tmp_path / "a.tif", np.stack([HEIGHTS + 1000 * i for i in range(4)]))
+    with rasterio.open(path, "r+") as file:
+        file.descriptions = names
+    look = vizlight.look(path)
+    assert look.mesh["rgb"].dtype == np.uint8
+    assert look.summary.startswith("B04, B03, B02 as red, green and blue")
+    assert [other.array for other in look.others] == names
+
+
 @pytest.mark.filterwarnings("ignore:The given matrix is equal")
 def test_degrees_are_found_by_the_reference_system_or_by_steep_heights(tmp_path):
     degrees = Affine(1 / 1200, 0, 11, 0, -1 / 1200, 60)

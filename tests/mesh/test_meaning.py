@@ -1,4 +1,6 @@
-"""What arrays mean: components of vectors, and values that stand for none."""
+"""What arrays mean: components of vectors, and the words of files."""
+
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -123,41 +125,6 @@ def test_components_become_vectors():
         meaning.with_named(mesh, "u,w")
 
 
-@pytest.mark.parametrize(
-    "value", [-9999, -32768, 32767, -3.4028235e38, 9.96921e36, -999, 1e20, -9.99e8]
-)
-def test_one_value_far_outside_and_repeated_is_missing(value):
-    values = np.random.default_rng(0).normal(100, 30, 1000).astype(np.float32)
-    values[:60] = value
-    out, words = meaning.without_missing("t", values)
-    assert np.flatnonzero(np.isnan(out)).tolist() == list(range(60))
-    assert words == f"6 % of 't' are {value:g}"
-    assert not np.isnan(values).any()
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        [0, 0, 1, 255], [0, 0, 0, 100, 101], [-9999, 1, 2, 3], [0, 50, 99, 99],
-        [-10_900, -9_999, -9_999, 8_000],
-    ],
-)  # fmt: skip
-def test_other_values_are_kept(values):
-    rows = np.array(values, np.int32)
-    out, words = meaning.without_missing("t", rows)
-    assert out is rows
-    assert words == ""
-
-
-def test_nodata_names_the_value():
-    rows = np.array([0, 7, 7, 12], np.int16)
-    out, words = meaning.without_missing("t", rows, 7)
-    assert np.isnan(out).tolist() == [False, True, True, False]
-    assert words == "50 % of 't' are 7"
-    rows = np.array([-9999.0, -9999, 1, 2])
-    assert meaning.without_missing("t", rows, float("nan"))[0] is rows
-
-
 def test_a_mesh_without_meaning():
     mesh = pv.ImageData(dimensions=(2, 2, 1))
     assert meaning.line(mesh) == ""
@@ -214,3 +181,16 @@ def test_pressures_of_air_have_a_usual_unit(standard, unit, size, expected):
 )
 def test_the_unit_of_a_speed_in_metres_a_second(unit, size):
     assert meaning.speed(mesh_with("u", "v", units=unit), "u,v") == pytest.approx(size)
+
+
+@pytest.mark.parametrize(("name", "title"), [
+    ("ImageFile", "heart"), ("ImageScalars", "heart"), ("DICOMImage", "heart"),
+    ("scalars", "heart"), ("Scalars_", "heart"), ("temperature", None),
+])  # fmt: skip
+def test_a_word_of_a_reader_is_no_title(name, title):
+    mesh = mesh_with(name)
+    meaning.name_by_file(mesh, Path("heart.nii.gz"))
+    assert meaning.of(mesh).arrays.get(name, {}).get("long_name") == title
+    several = mesh_with(name, "values")
+    meaning.name_by_file(several, Path("heart.vtk"))
+    assert "long_name" not in meaning.of(several).arrays.get(name, {})

@@ -112,9 +112,12 @@ class Shadows(NamedTuple):
         # A raster is sampled from above, and does not need the points of edges apart.
         is_raster = options.raster is not None
         surface = mesh if is_raster else split_where_computed(mesh, options.feature_angle)
-        # A raster, sampled from above, has its sky above alone.
+        ground = surface.copy(deep=False) if is_raster else surface
+        if is_raster:
+            # Sampled from above, it has its sky above alone, whatever side its normals are on.
+            ground.point_data.active_normals_name = None
         (sunlit,) = with_sky(
-            [surface], options.occlusion, elevation=options.elevation, factor=options.exaggeration,
+            [ground], options.occlusion, elevation=options.elevation, factor=options.exaggeration,
             up=ABOVE if is_raster else None,
         )  # fmt: skip
         share = share_of(sunlit, options.occlusion)

@@ -127,7 +127,8 @@ class Contents:
     mesh : pyvista.DataSet
         Mesh.
     raster : bool
-        Whether it comes from a file of a raster, with heights as its only band.
+        Whether it comes from a file of a raster, with heights as its only band, or is a terrain by
+        its shape, laid flat.
     without : tuple of str
         Names of arrays that are used for the light, such as normals, and are not shown.
     """

@@ -345,6 +345,7 @@ def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str)
     every = np.concatenate(values)
     unit, _ = meaning.usual_unit(read.run(), array, float(np.abs(every).max()))
     shown = range_shown(every / unit, lengths=vectors, amounts=has_ground)
+    shown = shown.around_zero(every / unit) if shown.is_signed else shown
     if shown.words(array):
         if isinstance(drawn, Step):
             drawn = ON_GROUND if shown.ground else ON_BANDS

@@ -71,7 +71,7 @@ def best_level(mesh: pv.DataSet, name: str) -> tuple[float, float]:
 
 def number(value: float) -> str:
     """Return a value in few digits."""
-    return f"{value:.4g}"
+    return f"{value + 0.0:.4g}"  # no -0
 
 
 def _few_digits(value: float, spread: float) -> float:

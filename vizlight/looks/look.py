@@ -322,7 +322,8 @@ class Look:
 
     def __str__(self) -> str:
         others = "; ".join(other.python for other in self.others) or "nothing else"
-        return f"shown    {self.summary}\nwhy      {self.reason}\nask      {others}"
+        notes = "".join(f"\nnote     {note}" for note in self.notes)
+        return f"shown    {self.summary}\nwhy      {self.reason}{notes}\nask      {others}"
 
     @property
     def summary(self) -> str:
@@ -452,6 +453,7 @@ def decide(data: object, wishes: Wishes) -> Look:
     if len(ready) == 1:
         ((step, contents, notes),) = ready
         step, contents = look_options.charted(step, contents, wishes)
+        step, contents = look_options.laid_flat(step, contents, wishes)
         rule, case = _chosen(step, contents, wishes)
         wide = replace(case, wishes=replace(wishes, wide=case.is_wide))
         return _decided(rule, wide, notes)
@@ -554,6 +556,10 @@ def _have_components(data: Sequence[object], wishes: Wishes) -> bool:
 def read_steps(data: object, wishes: Wishes) -> list[Step]:
     """Return the steps that read data: one for each dimension of the cells of a file of blocks."""
     keywords = {name: wishes.part[name] for name in look_options.READ if name in wishes.part}
+    grids = (*cf_grids.SUFFIXES, *georeference.SUFFIXES)
+    if not cf_grids.is_grid(data) and not str(data).lower().endswith(grids):
+        # Of other data they are left out afterwards.
+        keywords.pop("nodata", None)
     if cf_grids.is_grid(data):
         return [Step("data", "vizlight.read", Step("ds", "-", data), **keywords)]
     if isinstance(data, str | Path):
@@ -591,6 +597,9 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         raster = Path(data).suffix.lower() in (*georeference.SUFFIXES, ".dem")
         if part.get("time") is None and (note := series.note(step.run())):
             notes.append(note)
+    nodata = [] if part.get("nodata") is None else [part["nodata"]]
+    known = Step("known", "files.without_fills", step, *nodata)
+    step = step if known.run() is step.run() else known
     mesh = step.run()
     notes += [text] if (text := meaning.line(mesh)) else []
     if not mesh.n_points:

@@ -47,6 +47,8 @@ WITH_EXTREMES = {
 #: Functions that draw a map in degrees on a projection, and that put it on a ball.
 CHART = "vizlight.cartography.chart"
 GLOBE = "vizlight.cartography.globe"
+#: Method that draws a terrain as a map.
+FLAT = ".project_points_to_plane"
 #: Radii of the coasts of a ball of radius 1, and of the ball that hides its far side.
 ABOVE_BALL, BELOW_BALL = 1.002, 0.97
 
@@ -177,8 +179,13 @@ def smoothed(mesh: Step, array: Named) -> Step | None:
 
 
 def before_chart(mesh: Step) -> Step:
-    """Return the step of the map in degrees of which a step has bent the rows, else the step."""
-    source = mesh.arguments[0] if mesh.path == CHART else None
+    """Return the step before the one that bends rows or lays a surface flat for a map, else itself.
+
+    That is a map in degrees of which the rows are bent, or a terrain.
+    """
+    source = mesh.arguments[0] if mesh.path in (CHART, FLAT) else None
+    if isinstance(source, Step) and mesh.path == FLAT:
+        return source
     if not isinstance(source, Step) or not isinstance(mesh.run(), pv.StructuredGrid):
         return mesh
     return mesh if globes.middle_of(source.run()) is None else source

@@ -18,7 +18,7 @@ from vizlight.looks import map_parts
 from vizlight.looks.contents import Contents
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import STYLES, Wishes, scene_step
-from vizlight.mesh import charts, georeference, globes, meaning, series
+from vizlight.mesh import charts, georeference, globes, height_grids, meaning, series
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import PRESETS, required_scene
@@ -188,6 +188,20 @@ def charted(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Conte
     if charts.is_torn(chart.run()):
         return step, contents
     return chart, replace(contents, mesh=chart.run())
+
+
+def laid_flat(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Contents]:
+    """Return the step that draws a surface that is a terrain by its shape as a map, and contents.
+
+    Surfaces with data, those that are seen at a slant or lit by options, and all others stay.
+    """
+    is_asked = wishes.question not in ("auto", "relief") or wishes.view is not None or wishes.light
+    mesh = contents.mesh
+    if is_asked or wishes.part.get("warp") or contents.arrays or not height_grids.is_terrain(mesh):
+        return step, contents
+    heights = Step("heights", ".elevation", step)
+    flat = Step("flat", map_parts.FLAT, heights, origin=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0))
+    return flat, replace(contents, mesh=flat.run(), raster=True)
 
 
 def check_flow(file: object, mesh: pv.DataSet, name: str | None) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vizlight.draw.ticks import even_ends
+from vizlight.maps import TWO_SIDED
 
 if TYPE_CHECKING:
     from vizlight._types import Array
@@ -58,6 +59,18 @@ class Range(NamedTuple):
         powers = range(*np.floor(np.log10([self.low, 10 * self.high])).astype(int))
         inner = [float(f"{digit * 10.0**power:.6g}") for power in powers for digit in DIGITS]
         return [self.low, *(level for level in inner if self.low < level < self.high), self.high]
+
+    @property
+    def is_signed(self) -> bool:
+        """Whether it reaches far to both sides of 0, which is then the middle of its values."""
+        ends = sorted((-self.low, self.high))
+        return not (self.logarithmic or self.apart) and ends[0] >= TWO_SIDED * ends[1] > 0
+
+    def around_zero(self, values: Array) -> Range:
+        """Return the range of some values with 0 in its middle."""
+        end = max(-self.low, self.high)
+        clipped = bool(values.min() < -end), bool(values.max() > end)
+        return self._replace(low=-end, high=end, clipped=clipped)
 
     def words(self, name: str) -> str:
         """Return the words that say how the range differs from that of the values, if it does."""

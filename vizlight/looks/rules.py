@@ -78,7 +78,7 @@ def _is_flat(contents: Contents) -> bool:
 
 def _is_terrain(contents: Contents) -> bool:
     # Shadows are followed over grids.
-    return contents.flat_axis == 2 and bool(dimensions(contents.mesh))
+    return contents.flat_axis == 2 and (contents.raster or bool(dimensions(contents.mesh)))
 
 
 def _is_globe(contents: Contents) -> bool:

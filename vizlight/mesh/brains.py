@@ -230,8 +230,6 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     said.axes[-1] += (
         f", in mm by the affine of the header (stored {''.join(nibabel.aff2axcodes(image.affine))})"
     )
-    # The name of a format is no title.
-    said.add_array(name, {"long_name": path.name.partition(".")[0]})
     meaning.attach(grid, said)
     return grid if steps < 2 else series.marked(grid, times, index)
 

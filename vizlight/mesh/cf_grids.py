@@ -17,6 +17,7 @@ import pyvista as pv
 from vizlight.geometry.relief import height_field
 from vizlight.mesh import (
     dates,
+    fills,
     georeference,
     globes,
     grib_groups,
@@ -238,7 +239,7 @@ def of_dataset(
     at : dict, optional
         Value or index along any other axis, by its name. Default: the first.
     nodata : float, optional
-        Value that stands for none, as for :func:`.meaning.without_missing`.
+        Value that stands for none, as for :func:`.fills.without_missing`.
     source : str
         Name of the data in a warning.
 
@@ -446,7 +447,7 @@ class _Reader:
                 averaged.append(name)
             self.said.add_array(name, values.attrs)
             rows = np.asarray(values.transpose(*reversed(dims)).values)
-            rows, missing = meaning.without_missing(name, _within(rows, values.attrs), nodata)
+            rows, missing = fills.without_missing(name, _within(rows, values.attrs), nodata)
             words += [missing] if missing else []
             rows = self._heights(name, rows, values.attrs, flat=len(dims) == 2)
             for i, axis in enumerate(axes):
@@ -509,9 +510,7 @@ class _Reader:
 
     def _say(self, source: str, words: list[str]) -> None:
         """Warn of missing values, and note them."""
-        if words:
-            meaning.say(source, words)
-            self.said.notes += words
+        self.said.notes += fills.say(source, words)
 
     def _surface(
         self,
@@ -600,7 +599,7 @@ class _Reader:
             others = {dim: self._index(dim, single) for dim in dims if dim != along}
             self.said.add_array(name, variable.attrs)
             values = _within(np.asarray(variable.isel(others).values), variable.attrs)
-            values, missing = meaning.without_missing(name, values, nodata)
+            values, missing = fills.without_missing(name, values, nodata)
             words += [missing] if missing else []
             if isinstance(mesh, pv.RectilinearGrid) and variable.attrs.get(_TURNING) == 1:
                 values = listed.with_turned_rows(values, mesh.dimensions[0])

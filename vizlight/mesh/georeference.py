@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import re
 import warnings
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import blocks, meaning
+from vizlight.mesh import blocks, composites, fills, meaning
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -336,13 +336,17 @@ SUFFIXES = (
 SAMPLE = 100_000
 #: Channels of a picture in colour.
 _COLORS = ("red", "green", "blue")
+#: Interpretations and types of bands by name.
+Kinds: TypeAlias = "dict[str, tuple[str, str]]"
 
 
 def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.StructuredGrid:
     """Return the bands of a raster at the centres of its pixels, x east and y north.
 
     A band is a point array of its description, or ``elevation`` where it is the only one, else
-    ``band_1``, ``band_2``, ...; red, green and blue are ``rgb``. A single band that can be no
+    ``band_1``, ``band_2``, ...; red, green and blue are ``rgb`` as bytes, beside their bands where
+    these are no picture: by what the file or their names say, else the first of 3 or 4 bands of
+    whole numbers. A single band that can be no
     heights is named like its file: its unit is no length, it has a few whole numbers, or it is a
     gray picture, of bytes, or of numbers without a sign and a place. What the file marks as missing
     is NaN. The field data have its reference system as ``crs``, and its unit.
@@ -352,7 +356,7 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
     path : pathlib.Path
         Path of the file.
     nodata : float, optional
-        Value that stands for none, as for :func:`.meaning.without_missing`.
+        Value that stands for none, as for :func:`.fills.without_missing`.
 
     Returns
     -------
@@ -372,7 +376,7 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         with rasterio.open(path) as file:
             if (stack := _stack(file, path)) is not None:
                 return stack
-            arrays, units = _bands(file, path.name.split(".")[0])
+            arrays, units, kinds = _bands(file, path.name.split(".")[0])
             grid, turned = _grid(file)
             # A picture with a model of its camera has a system, but its pixels have no place.
             crs = None if file.transform.is_identity else file.crs
@@ -383,17 +387,15 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         # Heights without a unit on a map are taken for metres, as lengths are.
         metres = "m" if name == "elevation" and crs is not None else None
         said.add_array(name, {"units": units.get(name) or metres})
-        if name != "rgb":
-            rows, missing = meaning.without_missing(name, rows, nodata)
-            words += [missing] if missing else []
+        arrays[name], missing = fills.without_missing(name, rows, nodata)
+        words += [missing] if missing else []
+    arrays = _colored(arrays, kinds, said)
+    for name, rows in arrays.items():
         # Copied, since the arrays of a mesh are in the order of its points.
-        grid.point_data[name] = np.ascontiguousarray(rows[turned]).reshape(grid.n_points, -1)[
-            :, slice(None) if name == "rgb" else 0
-        ]
+        shape = (grid.n_points, *rows.shape[2:])
+        grid.point_data[name] = np.ascontiguousarray(rows[turned]).reshape(shape)
     grid.set_active_scalars(next(iter(arrays)))
-    if words:
-        meaning.say(path, words)
-        said.notes += words
+    said.notes += fills.say(path, words)
     if crs is not None:
         # PyVista keeps words in ASCII alone; other letters stand in names, which mean nothing.
         grid.field_data["crs"] = [crs.to_wkt().encode("ascii", "replace").decode("ascii")]
@@ -466,14 +468,17 @@ def _stack(file: Foreign, path: Path) -> pv.ImageData | None:
     return volume
 
 
-def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str]]:
-    """Return the bands by name, (rows, columns) or (rows, columns, 3) each, and their units."""
+def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str], Kinds]:
+    """Return the bands by name, (rows, columns) each, their units, kinds and types."""
     count = file.count
     found: dict[str, Raw] = {}
     units: dict[str, str] = {}
+    kinds: Kinds = {}
     for i in range(count):
-        if file.dtypes[i].startswith("complex"):
-            # Complex numbers, as of radar, are no heights; NumPy has no name for some of them.
+        kind = file.colorinterp[i].name
+        # Complex numbers, as of radar, are no heights; NumPy has no name for some of them. Opacity
+        # is in the mask of the other bands.
+        if file.dtypes[i].startswith("complex") or (kind == "alpha" and found):
             continue
         rows = _band(file, i)
         name = file.descriptions[i] or file.tags(i + 1).get("NETCDF_VARNAME") or f"band_{i + 1}"
@@ -486,16 +491,34 @@ def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str]]:
         # Two bands may have one description.
         name = f"{name}_{i + 1}" if name in found else name
         found[name], units[name] = rows, unit
+        kinds[name] = kind, file.dtypes[i]
     if not found:
         raise ValueError("no band of numbers that are not complex")
-    kinds = [kind.name for kind in file.colorinterp[:3]]
-    if kinds == [*_COLORS] and all(file.dtypes[i] == "uint8" for i in range(3)):
-        colors = [*found.values()]
-        rest = dict([*found.items()][3:])
-        # A pixel that is marked as missing has no colour: it is black.
-        rgb: Raw = np.stack([np.nan_to_num(c).astype(np.uint8) for c in colors[:3]], -1)
-        return {"rgb": rgb} | rest, units
-    return found, units
+    return found, units, kinds
+
+
+def _colored(arrays: dict[str, Raw], kinds: Kinds, said: meaning.Meaning) -> dict[str, Raw]:
+    """Return bands with the colours of three of them first, where three are red, green and blue.
+
+    Bytes that the file itself calls so are a picture, whose bands are left out.
+    """
+    names = composites.colors_among(kinds)
+    if not names:
+        return arrays
+    is_picture = all(
+        kinds[name] == (color, "uint8") for name, color in zip(names, _COLORS, strict=True)
+    )
+    if not is_picture and any(_of_classes(arrays[name]) for name in names):
+        return arrays
+    as_stored = all(kinds[name][1] == "uint8" for name in names)
+    rgb = composites.composite([arrays[name] for name in names], as_stored=as_stored)
+    if is_picture:
+        return {"rgb": rgb} | {name: arrays[name] for name in arrays if name not in names}
+    said.add_array("rgb", {"long_name": ", ".join(names)})
+    if not as_stored:
+        low, high = composites.ENDS
+        said.notes.append(f"colours run from their percentile {low} to {high}")
+    return {"rgb": rgb} | arrays
 
 
 def _unit(file: Foreign, i: int) -> str:

@@ -14,6 +14,7 @@ from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.depth_map import depth_map
 from vizlight.mesh import blocks, georeference, records, subdivision
 from vizlight.vtk.arrays import GridPoints, points_of
+from vizlight.vtk.cells import has_faces
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices
@@ -22,6 +23,11 @@ Grid: TypeAlias = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 #: Largest extent in z of a level grid, as a share of its size: the rounding of float32 directions.
 LEVEL = 1e-6
 REMEDY = "pass raster=0 to sample it on an even grid, or its surface with thickness="
+#: Least side of a terrain, largest height as a share of it, least number of its slopes, and the
+#: step in which these differ.
+WIDE, MOST_HIGH, MANY, SLOPE = 100.0, 0.5, 50, 0.01
+#: Number of faces that are looked at first.
+SAMPLE = 2000
 #: Largest number of nodes of a raster.
 LARGEST = 1 << 28
 
@@ -255,6 +261,45 @@ def _turn(nodes: Array, rounding: float) -> Array | None:
     size = np.hypot(x, y)
     # Takes the direction of the rows to the x axis; heights stay.
     return np.asarray(np.array([[x, y, 0], [-y, x, 0], [0, 0, size]]) / size)
+
+
+def is_terrain(surface: pv.DataSet) -> bool:
+    """Return whether a surface is a terrain by its shape: heights, one above each place of a plain.
+
+    All its faces look up, or all down; it is far wider than high, 100 units at least, as maps in
+    metres are, and has many slopes, while parts have walls and few normals.
+
+    Parameters
+    ----------
+    surface : pyvista.DataSet
+    """
+    wide, long, high = surface.bounds_size
+    is_wide = min(wide, long) >= max(WIDE, high / MOST_HIGH) and high > 0
+    if not isinstance(surface, pv.PolyData) or not is_wide or not has_faces(surface):
+        return False
+    triangles = subdivision.simplices(surface)
+    some = _areas(surface, triangles[:: max(len(triangles) // SAMPLE, 1)])
+    if not _look_alike(some):
+        return False
+    slopes = np.rint(some[:, :2] / some[:, 2:] / SLOPE)
+    _, counts = np.unique(slopes, axis=0, return_counts=True)
+    if len(counts) < MANY or counts.max() > len(slopes) / 2:
+        return False
+    every = _areas(surface, triangles)
+    # Faces one above another have more area in the plain than there is.
+    area = float(np.abs(every[:, 2]).sum())
+    return _look_alike(every) and area <= 2 * wide * long * (1 + LEVEL)
+
+
+def _areas(surface: pv.PolyData, triangles: Indices) -> Array:
+    """Return vectors along the normals of triangles, twice as long as their areas."""
+    first, second, third = np.asarray(surface.points, dtype=np.float64)[triangles.T]
+    return np.asarray(np.cross(second - first, third - first))
+
+
+def _look_alike(areas: Array) -> bool:
+    """Return whether all triangles look up, or all down."""
+    return bool(np.all(areas[:, 2] > 0) or np.all(areas[:, 2] < 0))
 
 
 def raised(grid: Grid) -> Grid:

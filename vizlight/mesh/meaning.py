@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import json
-import math
 import re
 from collections import Counter
 from dataclasses import asdict, dataclass, field
@@ -18,6 +17,7 @@ from vizlight.vtk.arrays import stacked
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
 
     import pyvista as pv
 
@@ -26,8 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ANATOMY", "MEANING", "Meaning", "along_grid", "attach", "components", "is_of_sea", "line",
-    "metres", "of", "only_vectors", "say", "speed", "usual_unit", "vectors", "ways", "with_named",
-    "without_missing",
+    "metres", "of", "only_vectors", "speed", "usual_unit", "vectors", "ways", "with_named",
 ]  # fmt: skip
 
 #: Most distinct values of an array of kinds, such as materials or labels.
@@ -94,6 +93,29 @@ class Meaning:
         of_array["flags"] = " ".join(itertools.starmap("{}:{}".format, pairs))
         if hues:
             of_array["colors"] = " ".join(itertools.starmap("{}:#{}".format, hues))
+
+
+#: Names that readers and programs give to an array without one, in lower case.
+_OF_READERS = re.compile(
+    r"\w*image([ _]?(file|scalars|data))?|(\w+ )?scalars_?|minc|mgh|afni|nifti|values|data"
+    r"|__xarray_dataarray_variable__"
+)
+
+
+def is_of_reader(name: str) -> bool:
+    """Return whether the name of an array is a word of a reader, such as ``ImageScalars``."""
+    return _OF_READERS.fullmatch(name.lower()) is not None
+
+
+def name_by_file(mesh: pv.DataSet, path: Path) -> None:
+    """Keep the name of a file as the title of the only array that has a name of its reader."""
+    names = [name for data in (mesh.point_data, mesh.cell_data) for name in data]
+    names = [name for name in names if is_of_reader(name)]
+    said = of(mesh)
+    attributes = said.arrays.setdefault(names[0], {}) if len(names) == 1 else {"long_name": ""}
+    if "long_name" not in attributes and "standard_name" not in attributes:
+        attributes["long_name"] = path.name.partition(".")[0]
+        attach(mesh, said)
 
 
 def flags(mesh: pv.DataSet, name: str, key: str = "flags") -> dict[float, str]:
@@ -582,101 +604,3 @@ def along_grid(attributes: Mapping[str, str]) -> bool | None:
     if re.search(r"(?<![a-z])[xyij][_ -]|grid|_i_|_j_", words):
         return True
     return False if re.search(r"east|north|zonal|meridional", words) else None
-
-
-#: Values that stand for none in files that do not say so, beside those whose digits are all 9.
-_LIMITS = {-(2.0**15), 1 - 2.0**15, 2.0**15 - 1, 2.0**16 - 1, -(2.0**31), 2.0**31 - 1}
-#: Least size of a value that is none, as 1e20, 9.97e36 and 3.4e38 are.
-_HUGE = 1e15
-
-
-def _seems_missing(value: float) -> bool:
-    """Return whether a number is one of those that stand for none."""
-    if value in _LIMITS or abs(value) >= _HUGE:
-        return True
-    # Of -9.99e8, too, and of none below 1.
-    digits = f"{abs(value):.6g}".partition("e+")[0].replace(".", "")
-    # 99 may be a number of percents.
-    return len(digits) > (1 if value < 0 else 2) and set(digits) == {"9"}
-
-
-def without_missing(name: str, values: Raw, nodata: float | None = None) -> tuple[Raw, str]:
-    """Return values with NaN where they are missing though the file does not say so.
-
-    One value far outside of all others, repeated, that is usual for this: -9999, -32768, 32767,
-    1e20, -3.4e38 and the like.
-
-    Parameters
-    ----------
-    name : str
-        Name of the array, for the words.
-    values : ndarray
-        Values, NaN where they are known to be missing.
-    nodata : float, optional
-        Value that stands for none, in place of the search; NaN for no further one.
-
-    Returns
-    -------
-    ndarray
-        The values themselves where none is missing, else a copy in floating point.
-    str
-        Words with the value and its share.
-    """
-    if values.dtype.kind not in "iuf" or not values.size:
-        return values, ""
-    finite: Raw = values[np.isfinite(values)] if values.dtype.kind == "f" else values.ravel()
-    missing = [nodata] if nodata is not None else _outliers(finite)
-    words = []
-    for value in missing:
-        if value is None or math.isnan(value):
-            continue
-        # Floating-point numbers are rounded to the type of the values.
-        at = np.isclose(values.astype(np.float64), value, rtol=1e-6, atol=0)
-        if not at.any():
-            continue
-        if values.dtype.kind != "f":
-            values = values.astype(np.float32 if values.dtype.itemsize <= 2 else np.float64)
-        values = np.where(at, np.nan, values).astype(values.dtype)
-        share = at.mean()
-        words.append(f"{100 * share:.2g} % of {name!r} are {value:g}")
-    return values, " and ".join(words)
-
-
-def _outliers(finite: Raw) -> list[float]:
-    """Return the values at the ends of all others that stand for none."""
-    result: list[float] = []
-    rest = finite
-    for _ in range(2):
-        if not rest.size:
-            break
-        for end in (float(rest.min()), float(rest.max())):
-            if not _seems_missing(end):
-                continue
-            inner = rest[rest != end]
-            if not inner.size:
-                continue
-            low, high = float(inner.min()), float(inner.max())
-            gap = low - end if end < low else end - high
-            # A single pixel may be a fault of its own, and is seen to be one where it is huge.
-            repeated = rest.size - inner.size > 1 or abs(end) >= _HUGE
-            if repeated and gap > max(high - low, abs(end) / 2):
-                result.append(end)
-                rest = inner
-    return result
-
-
-def say(path: object, words: Sequence[str]) -> None:
-    """Warn of values that were taken for missing.
-
-    Parameters
-    ----------
-    path : path
-        Path of the file.
-    words : sequence of str
-        Words of :func:`without_missing`.
-    """
-    if words:
-        _check.warn(
-            f"file: '{path}': {'; '.join(words)}, far from all other values: they are taken for "
-            "missing; pass nodata= to name the value, nodata=nan to keep all"
-        )

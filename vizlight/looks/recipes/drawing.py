@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from vizlight.looks.wishes import Wishes
 
 #: Colour map where nothing is lit, and that of values on lit surfaces.
-LIGHTNESS, ON_SURFACES = "viridis", "vizlight.surface"
-#: Colour maps of bands, and of amounts on a ground, and the colour of this.
+PLAIN = LIGHTNESS, ON_SURFACES = "viridis", "vizlight.surface"
+#: Colour maps of bands and of values around 0, and of amounts on a ground, and the colour of this.
 ON_BANDS, ON_GROUND, GROUND = "vizlight.bands", "vizlight.amounts", "#fbfbf8"
 #: Least width of a line, in pixels, for each pixel of the width of a picture: 1.5 at 300 dpi where
 #: the picture is 85 mm wide.
@@ -421,10 +421,17 @@ class Case:
         **kind
             Kind of the values, as for :func:`vizlight.looks.ranges.range_shown`.
         """
-        values = values[np.isfinite(values)]
-        if "clim" in self.wishes.colors or not values.size:
+        values = values[np.isfinite(values)] / unit
+        # Points in the pale colour of 0 would not be seen on paper.
+        is_plain = cmap in PLAIN and self.contents.dimension > 0
+        limits: Foreign = self.wishes.colors.get("clim")
+        if limits is not None or not values.size:
+            is_even = limits is not None and limits[0] == -limits[1]
+            cmap = ON_BANDS if is_even and is_plain else cmap
             return {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors, ""
-        shown = range_shown(values / unit, **kind)
+        shown = range_shown(values, **kind)
+        if shown.is_signed and is_plain:
+            shown, cmap = shown.around_zero(values), ON_BANDS
         colors = {"cmap": ON_GROUND if shown.ground else cmap, "nan_color": MISSING}
         colors |= self.wishes.colors
         return colors | colors_in(shown, colors["cmap"], unit), shown.words(name)
@@ -570,7 +577,8 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | 
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     word, of_brains = brains.MEASURES.get(name, ("", "")) if brains.hemisphere(mesh) else ("", "")
     unit = attributes.get("units", "").strip() or of_brains
-    title = attributes.get("long_name") or attributes.get("standard_name") or word or name
+    title = attributes.get("long_name") or attributes.get("standard_name") or word
+    title = title or ("values" if meaning.is_of_reader(name) else name)
     if "," in name:
         title = _in_common(mesh, name.split(",")) or name
     unit = "" if unit == "1" else meaning.written(unit)

@@ -38,8 +38,8 @@ def relief(case: Case) -> Drawing:
     raised, note = _raised(case, array)
     keywords: Keywords = {"lit": True, **raised}
     straight = map_parts.before_chart(data)
-    if isinstance(straight.run(), pv.StructuredGrid) and "raster" not in keywords:
-        # Rows and columns that are not at right angles are sampled on an even grid.
+    if isinstance(straight.run(), pv.StructuredGrid | pv.PolyData) and "raster" not in keywords:
+        # Rows and columns that are not at right angles, and faces, are sampled on an even grid.
         keywords["raster"] = 0.0
     most = MOST_SKY if straight is data else MOST_WIDE
     if keywords["lit"] and "occlusion" not in keywords and data.run().n_points <= most:
@@ -48,8 +48,10 @@ def relief(case: Case) -> Drawing:
     notes = [note] if note else []
     if case.wishes.question == "auto" and not says_heights(data.run(), array.name):
         notes.append(f"{array.name} is taken for heights; question='value' shows its colours alone")
+    if data.path == map_parts.FLAT:
+        notes.append("a terrain by its shape; question='shape' shows the surface as it stands")
     if not keywords["lit"]:
-        bent = lit if straight is data else Step("chart", data.path, lit)
+        bent = lit if straight is data else _drawn_as(data, lit)
         return _share(case, bent, camera, scene, f"shadow on {array.name}", "t", notes)
     colors = case.wishes.colors
     if "cmap" not in colors:
@@ -61,7 +63,7 @@ def relief(case: Case) -> Drawing:
     # Light in fragments has another grey for what is missing, which is far from that of paper.
     live = straight is data and not has_holes
     if straight is not data:
-        shown = Step("chart", data.path, shown)
+        shown = _drawn_as(data, shown)
     if not live:
         drawn |= {"scalars": "rgb", "rgb": True, "lighting": False}
     bar = case.bar(array, colors)
@@ -73,6 +75,11 @@ def relief(case: Case) -> Drawing:
         [layer], camera, scene, lit, f"relief of {array.name}", keys, notes, kind=straight,
         name="t", colors=colors_of(array, colors),
     )  # fmt: skip
+
+
+def _drawn_as(data: Step, lit: Step) -> Step:
+    """Return the step that bends or lays flat a lit mesh, as another step does the data."""
+    return Step(data.name, data.path, lit, *data.arguments[1:], **data.keywords)
 
 
 def shadow(case: Case) -> Drawing:

@@ -21,7 +21,7 @@ from vizlight.looks.recipes.drawing import (
     unlit,
 )
 from vizlight.looks.steps import Step
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, meaning
 from vizlight.mesh.nspace import POSITION
 
 if TYPE_CHECKING:
@@ -82,6 +82,9 @@ def values(case: Case) -> Drawing:
     shown |= case.wishes.drawn(light)
     lit = case.lit(mesh, scene, **light)
     keys = [] if array.role == "colors" else [case.bar(array, keywords)]
+    words = f"{array.name} in colours"
+    if array.role == "colors" and (bands := meaning.of(mesh.run()).arrays.get(array.name, {})):
+        words = f"{bands['long_name']} as red, green and blue"
     notes = [note] if note else []
     if array.role == "kinds" and (count := len(kinds_of(mesh.run(), array.name))) > MOST_IN_KEY:
         keys, notes = [], [f"{array.name} has {count} kinds: colours repeat, and have no key"]
@@ -91,7 +94,7 @@ def values(case: Case) -> Drawing:
         layers = [*(Layer(side, shown) for side in sides.layers()), case.words(names)]
     return Drawing(
         layers, camera, scene, lit,
-        f"{array.name} in colours", keys,
+        words, keys,
         colors=colors_of(array, keywords), notes=notes,
     )  # fmt: skip
 
