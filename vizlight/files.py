@@ -111,12 +111,12 @@ _ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
 _ADDRESS = re.compile(r" \(0x[0-9a-f]+\)| for request: vtkInformation.*| when asked by REQUEST.*")
 
 
-#: What VTK says of files that are whole: importers of VRML and 3DS make a window that none needs,
-#: keys of ParaView's, of NRRD and ranges of NaN are metadata, conditions at the boundary of CGNS no
-#: cells, percentages of 3DS parts of materials.
+#: What VTK says of files that are whole: its importer of VRML makes a window that none needs, keys
+#: of ParaView's, of NRRD and ranges of NaN are metadata, conditions at the boundary of CGNS no
+#: cells.
 _HARMLESS = re.compile(
     "bad X server connection|Could not locate key|Error reading InformationKey|Skipping BC_t node"
-    "|glTF extension .* is used in|Error parsing percentage|Unknown field: '[^:]*:="
+    "|glTF extension .* is used in|Unknown field: '[^:]*:="
 )
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
@@ -274,16 +274,16 @@ def _read(
         return _unpacked(path, lambda file: _read(file, time, overlays, at, nodata, whole=whole))
     reason, notes = "no points", list[str]()
     meshes: list[Foreign] = []
-    # A file that is cut short may end the process inside its reader, and is refused before that.
-    if short := short_files.missing_part(path):
-        raise _damaged(path, short)
-    # VTK ends the process where a piece of a grid has an error.
-    for piece in references.named(path) if path.suffix.lower() in GRID_PIECES else ():
-        _read(piece, None, (), whole=True)
     limit = _supervise.read_limit(path.stat().st_size)
     reading = _supervise.stage("read", path, seconds=limit)
     # Damaged numbers overflow in readers, which say what is wrong beside that.
     with reading, captured_errors() as errors, np.errstate(all="ignore"):
+        # A file that is cut short may end the process inside its reader, and is refused before.
+        if short := short_files.missing_part(path):
+            raise _damaged(path, short)
+        # VTK ends the process where a piece of a grid has an error.
+        for piece in references.named(path) if path.suffix.lower() in GRID_PIECES else ():
+            _read(piece, None, (), whole=True)
         try:
             data: Foreign = _found(path, time, at, nodata)
             if _faults(errors):

@@ -14,6 +14,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
+from vizlight import _supervise
 from vizlight.files import FileError
 from vizlight.mesh import short_files
 
@@ -87,6 +88,8 @@ VTM = (
 )
 PACKED = gzip.compress(bytes(range(200)))
 HDF = b"\x89HDF\r\n\x1a\n" + bytes(32) + (100).to_bytes(8, "little") + bytes(52)
+#: A text of five bytes in a heap of HDF5, filled up to eight.
+HEAP = struct.pack("<HHIQ8s", 1, 1, 0, 5, b"words")
 
 
 def archive():
@@ -95,20 +98,6 @@ def archive():
     with zipfile.ZipFile(file, "w") as parts:
         parts.writestr("header.json", "{}")
     return file.getvalue()
-
-
-def studio(*corners, count=1):
-    """Return a file of 3DS with three points and a triangle."""
-
-    def chunk(kind, data):
-        return struct.pack("<HI", kind, 6 + len(data)) + data
-
-    points = chunk(0x4110, struct.pack("<H9f", 3, 0, 0, 0, 1, 0, 0, 0, 1, 0))
-    faces = chunk(0x4120, struct.pack("<5H", count, *corners, 7))
-    # A material whose texture states no percentage.
-    material = chunk(0xAFFF, chunk(0xA000, b"m\0") + chunk(0xA200, chunk(0xA300, b"a.b\0")))
-    shape = chunk(0x4000, b"s\0" + chunk(0x4100, points + faces))
-    return chunk(0x4D4D, chunk(0x3D3D, material + shape))
 
 
 AVS = b"3 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 0 tri 1 2 3\n"
@@ -147,7 +136,6 @@ WHOLE = {
     "a.obj": OBJ,
     "untextured.obj": OBJ.replace(b"vt 0 0\n", b""),
     "slashes.obj": OBJ.replace(b"/1/1", b"/1/").replace(b"vn 0 0 1\n", b""),
-    "a.3ds": studio(0, 1, 2),
     "three.vtk": cells(3, 0, 1, 2, 3, 1, 2, 3),
     "mixed.vtk": cells(3, 0, 1, 2, 4, 0, 1, 3, 2),
     "binary.vtk": cells(3, 0, 1, 2, 4, 0, 1, 3, 2, text=False),
@@ -228,10 +216,16 @@ WRONG = {
     "cut sum": ("a.nii.gz", PACKED[:-8], "ended before the end-of-stream marker"),
     "sum of a part": ("a.trx", archive().replace(b"{}", b"{ "), "the check sum of 'header.json'"),
     "no archive": ("a.trx", archive()[:-9], "File is not a zip file"),
-    "no group": ("a.hdf", HDF, "it has no group VTKHDF"),
-    "corner": ("a.3ds", studio(0, 1, 9), "a triangle has the point 9 of 3"),
-    "rows": ("a.3ds", studio(0, 1, 2, count=99), "99 rows are not within 8 bytes"),
-    "chunk": ("a.3ds", studio(0, 1, 2)[:-1], "a part of .* bytes is not within"),
+    "heap": (
+        "a.nc",
+        HDF + b"GCOL\1" + bytes(3) + struct.pack("<Q", 56) + HEAP + bytes(16),
+        "free space of 0",
+    ),
+    "no group": (
+        "a.hdf",
+        HDF + b"GCOL\1" + bytes(3) + struct.pack("<Q", 40) + HEAP,
+        "it has no group VTKHDF",
+    ),
     "attribute": (
         "a.vtk",
         cells(3, 0, 1, 2, 3, 0, 1, 2) + b"\nPOINT_DATA 4\nF\xffELD a 1\n",
@@ -409,6 +403,10 @@ def test_a_damaged_file_of_exodus_is_opened_by_another_process(tmp_path, monkeyp
     path.write_bytes(data)
     with pytest.raises(FileError, match="VTK's reader of Exodus cannot read it to its end"):
         vizlight.read(path)
+    # The command line is another process.
+    with monkeypatch.context() as child:
+        child.setattr(_supervise, "has_parent", lambda: True)
+        assert short_files.missing_part(path) == ""
     monkeypatch.setattr(short_files, "_EXODUS", "import time; time.sleep(60)")
     monkeypatch.setattr(short_files, "_EXODUS_SECONDS", 0.2)
     with pytest.raises(FileError, match="VTK's reader of Exodus does not come to an end"):

@@ -27,6 +27,7 @@ from vizlight.mesh import (
     polylines,
     scene_files,
     short_files,
+    studio_3ds,
     su2,
     tetgen,
 )
@@ -527,6 +528,7 @@ _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = 
     ".trk": _tracts, ".tck": _tracts, ".trx": _tracts_of_trx, ".pts": _scan, ".xyz": _scan,
     ".las": _lidar, ".laz": _lidar, ".obj": _wavefront, ".off": geomview.read_off,
     ".pdb": molecules.of_pdb, ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
+    ".3ds": studio_3ds.read,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
     **dict.fromkeys(tetgen.SUFFIXES, tetgen.read),
 }  # fmt: skip

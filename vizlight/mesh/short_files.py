@@ -28,7 +28,7 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import VTK_POLYHEDRON
 
-from vizlight import _check
+from vizlight import _check, _supervise
 from vizlight.mesh import references, series
 from vizlight.vtk.cells import cell_arrays, connectivity, points_of_type
 
@@ -209,39 +209,23 @@ def _vtkhdf(file: BinaryIO) -> str:
         return "" if data.find(b"VTKHDF") >= 0 else "it has no group VTKHDF, which VTK reads"
 
 
-#: Kinds of chunks of 3DS that hold others, and the one that holds them after its name.
-_HOLDERS, _NAMED = (0x4D4D, 0x3D3D, 0x4100), 0x4000
-#: Those of points and of triangles, which have numbers of points, and the bytes of a row.
-_POINTS, _TRIANGLES = 0x4110, 0x4120
-_ROW = {_POINTS: 12, _TRIANGLES: 8}
+#: Largest HDF5 file that is searched for heaps, which takes 0.1 s.
+_SEARCHED = 1 << 28
 
 
-def _3ds(file: BinaryIO) -> str:
-    """Follow the chunks, each of which states its size, and compare points with triangles."""
-    data, points = file.read(), 0
-    ends, place = [len(data)], 0
-    while ends:
-        if place + 6 > ends[-1]:
-            place = ends.pop()
-            continue
-        kind, size = struct.unpack_from("<HI", data, place)
-        end, inner = place + size, place + 6
-        if not 6 <= size <= ends[-1] - place:
-            return f"a part of {size} bytes is not within {ends[-1] - place}"
-        if kind in _ROW:
-            (count,) = struct.unpack_from("<H", data, inner)
-            if _ROW[kind] * count > end - inner - 2:
-                return f"{count} rows are not within {end - inner - 2} bytes"
-            points = count if kind == _POINTS else points
-            if kind == _TRIANGLES:
-                corners = np.frombuffer(data, "<u2", 4 * count, inner + 2).reshape(-1, 4)[:, :3]
-                if corners.max(initial=0) >= max(points, 1):
-                    return f"a triangle has the point {corners.max()} of {points}"
-        if kind in _HOLDERS or kind == _NAMED:
-            ends.append(end)
-            place = data.index(b"\0", inner) + 1 if kind == _NAMED else inner
-        else:
-            place = end
+def _heaps(file: BinaryIO) -> str:
+    """Follow the texts and lists of HDF5, among which its library goes around a free space of 0."""
+    if file.seek(0, 2) > _SEARCHED:
+        return ""
+    with _mapped(file) as data:
+        for place in _places(data, b"GCOL\1\0\0\0"):
+            (size,) = struct.unpack_from("<8xQ", data, place)
+            at, end = place + 16, min(place + size, len(data))
+            while at + 16 <= end:
+                number, size = struct.unpack_from("<H6xQ", data, at)
+                if not number and not size:
+                    return "a heap of HDF5 has a free space of 0 bytes"
+                at += 16 + (size + 7) // 8 * 8 if number else size
     return ""
 
 
@@ -251,7 +235,7 @@ def _netcdf(file: BinaryIO) -> str:
     if head.startswith(_HDF):
         # A cut within the header leaves no bytes of this number, which then is 0.
         end = int.from_bytes(head[_HDF_END[head[8]] :][:8], "little")
-        return _size(file, end) if end else "its header is not whole"
+        return (_size(file, end) or _heaps(file)) if end else "its header is not whole"
     # SciPy does not map this version: nothing can be told.
     if head.startswith(_LARGE):
         return ""
@@ -287,7 +271,9 @@ def _exodus(file: BinaryIO) -> str:
     """Read a file of HDF5 in another process: one that is damaged ends it, or spoils later ones."""
     lacking, size = _netcdf(file), file.seek(0, 2)
     file.seek(0)
-    if lacking or file.read(len(_HDF)) != _HDF or not sys.executable:
+    # The command line is another process.
+    alone = _supervise.has_parent() or not sys.executable
+    if lacking or alone or file.read(len(_HDF)) != _HDF:
         return lacking
     try:
         run = subprocess.run(
@@ -935,7 +921,7 @@ def _grib(file: BinaryIO) -> str:
 #: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".png": _png,
-    ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp, ".3ds": _3ds, ".trx": _zip,
+    ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp, ".trx": _zip,
     ".vtm": _blocks, **dict.fromkeys((".gz", ".mgz"), _gzip),
     **dict.fromkeys((".hdf", ".vtkhdf"), _vtkhdf),
     **dict.fromkeys((".glb", ".gltf"), _gltf),
