@@ -49,13 +49,6 @@ def cells(*numbers, text=True):
 
 
 OBJ = b"# 12/31/2020\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n"
-GEO = (
-    "geo\nmade\nnode id assign\nelement id assign\npart\n         1\nall\ncoordinates\n         3\n"
-    + "".join(f"{x:12.5e}\n" for x in (0, 1, 0, 0, 0, 1, 0, 0, 0))
-    + "tria3\n         1\n         1         2         3\n"
-)
-CASE = b"FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: s a.scl\n"
-
 
 GLTF = {
     "asset": {"version": "2.0"},
@@ -204,12 +197,6 @@ WRONG = {
     ),
     "bracket": ("a.vtk", FIELD.replace(b"1 2 3 4\n", b"1 ] 3 4\n"), "words stand among"),
     "columns": ("a.pdb", ATOM.replace(b"   1  ", b"1" + b"0" * 30), "no numbers in the columns"),
-    "twice said": ("a.case", CASE[:26] + CASE, "the section FORMAT stands twice"),
-    "section": ("a.case", CASE[:52], "no such section as b'VARI'"),
-    "variable": ("a.case", CASE.replace(b"per node", b"per \0"), "no such variable as"),
-    "missing": ("a.case", CASE.replace(b"a.geo", b"b.geo"), "'b.geo', which is missing"),
-    "type": ("a.case", CASE.replace(b"ght", b"\0\xff"), "no such type as"),
-    "no name": ("a.case", CASE[:-8], "names no file in the line b'scalar per node:"),
     "long name": ("a.vtm", VTM % (0, b"a" * 300, 1), "File name too long"),
     "two blocks": ("a.vtm", VTM % (0, b"b.vtp", 0), "two blocks have the index 0"),
     "sum of all": ("a.mgz", PACKED[:-8] + bytes(4) + PACKED[-4:], "CRC check failed"),
@@ -236,7 +223,6 @@ WRONG = {
         cells(3, 0, 1, 2, 3, 0, 1, 2) + b"\nCELL_TYPES 2\n5 99\n",
         "no cells of type 99",
     ),
-    "part": ("a.case", CASE, "the part b'7', which the geometry has not"),
 }
 
 
@@ -258,19 +244,9 @@ def test_messages_of_both_editions_are_followed(tmp_path):
 @pytest.mark.parametrize("kind", WRONG)
 def test_headers_that_contradict_the_data_are_refused(kind, tmp_path):
     name, content, words = WRONG[kind]
-    (tmp_path / "a.geo").write_text(GEO)
-    (tmp_path / "a.scl").write_text("s\npart\n         7\ncoordinates\n")
     (tmp_path / name).write_bytes(content)
     with pytest.raises(FileError, match=words):
         vizlight.read(tmp_path / name)
-
-
-def test_a_case_whose_parts_fit_is_read(tmp_path):
-    rows = "".join(f"{x:12.5e}\n" for x in (5, 6, 7))
-    (tmp_path / "a.geo").write_text(GEO)
-    (tmp_path / "a.scl").write_text(f"s\npart\n         1\ncoordinates\n{rows}")
-    (tmp_path / "a.case").write_bytes(CASE)
-    np.testing.assert_allclose(vizlight.read(tmp_path / "a.case").point_data["s"], [5, 6, 7])
 
 
 @pytest.mark.parametrize("count", [-1, 10**12])

@@ -13,7 +13,6 @@ import itertools
 import json
 import math
 import mmap
-import os
 import re
 import struct
 import subprocess
@@ -29,7 +28,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import VTK_POLYHEDRON
 
 from vizlight import _check, _supervise
-from vizlight.mesh import references, series
+from vizlight.mesh import ensight, references, series
 from vizlight.vtk.cells import cell_arrays, connectivity, points_of_type
 
 if TYPE_CHECKING:
@@ -537,65 +536,6 @@ def _mdpa(file: BinaryIO) -> str:
     return wrong if blocks else ""
 
 
-#: Words of an EnSight case that stand alone in a line.
-_SECTIONS = (
-    b"FORMAT", b"GEOMETRY", b"VARIABLE", b"TIME", b"FILE", b"MATERIAL", b"BLOCK_CONTINUATION",
-    b"SCRIPTS",
-)  # fmt: skip
-
-
-#: Formats of EnSight, and kinds of its variables.
-_TYPES = [[b"ensight"], [b"ensight", b"gold"]]
-_KIND = re.compile(
-    rb"(?i)\s*(constant\s+per\s+case(\s+file)?"
-    rb"|(complex\s+)?(scalar|vector|tensor(\s+a?symm?)?)\s+per\s+(measured\s+)?(node|element))\s*"
-)
-
-
-def _ensight(file: BinaryIO) -> str:
-    """Check the lines of a case, and the files that it names for their parts."""
-    folder, section, sections = Path(file.name).parent, b"", set[bytes]()
-    parts: set[bytes] | None = None
-    for line in file.read().splitlines():
-        head, colon, rest = line.partition(b"#")[0].partition(b":")
-        words = [word for word in rest.split() if not word.isdigit()]
-        if head.strip().upper() in _SECTIONS and not colon:
-            section = head.strip().upper()
-            if section in sections:
-                return f"the section {section.decode()} stands twice"
-            sections.add(section)
-        elif not colon and not re.fullmatch(rb"[\s\d.eE+-]*", head):
-            return f"no such section as {line[:40]!r}"
-        elif section == b"VARIABLE" and colon and not _KIND.fullmatch(head):
-            return f"no such variable as {line[:40]!r}"
-        elif (
-            section == b"FORMAT" and head.strip() == b"type" and rest.lower().split() not in _TYPES
-        ):
-            return f"no such type as {rest[:40]!r}"
-        elif colon and not words and section in (b"GEOMETRY", b"VARIABLE"):
-            return f"it names no file in the line {line[:40]!r}"
-        elif section in (b"GEOMETRY", b"VARIABLE") and words:
-            # Stars stand for the digits of a step; numbers without a file, and pairs of files.
-            if b"*" in rest or b'"' in rest or re.match(rb"\s*(constant|complex)", head):
-                continue
-            name = os.fsdecode(words[0 if section == b"GEOMETRY" else -1])
-            if not (folder / name).is_file():
-                return f"it names {name!r}, which is missing"
-            numbers = _parts(folder / name)
-            parts = numbers if section == b"GEOMETRY" else parts
-            if numbers is not None and parts is not None and (other := numbers - parts):
-                return f"{name!r} has the part {min(other)!r}, which the geometry has not"
-    return ""
-
-
-def _parts(path: Path) -> set[bytes] | None:
-    """Return the numbers of the parts in a file of text of EnSight, None of another one."""
-    data = path.read_bytes()
-    if b"Binary" in data[:80]:
-        return None
-    return {word.strip() for word in re.findall(rb"(?m)^part[ \t]*\r?$\s?([^\n]*)", data)}
-
-
 def _gifti(file: BinaryIO) -> str:
     """Check the numbers of axes, to which nibabel counts."""
     data = file.read()
@@ -920,7 +860,7 @@ def _grib(file: BinaryIO) -> str:
 
 #: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
-    ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".png": _png,
+    ".case": ensight.missing_part, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".png": _png,
     ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp, ".trx": _zip,
     ".vtm": _blocks, **dict.fromkeys((".gz", ".mgz"), _gzip),
     **dict.fromkeys((".hdf", ".vtkhdf"), _vtkhdf),
