@@ -62,10 +62,10 @@ def missing_part(file: BinaryIO) -> str:
         The case, which is open.
     """
     folder, section, sections = Path(file.name).parent, b"", set[bytes]()
-    form, named = list[bytes](), list[_Line]()
+    form, named = list[bytes](), list[_Entry]()
     for text in file.read().splitlines():
         head, colon, rest = text.partition(b"#")[0].partition(b":")
-        line = _Line(head.strip(), rest, _KIND.fullmatch(head))
+        line = _Entry(head.strip(), rest, _KIND.fullmatch(head))
         if head.strip().upper() in _SECTIONS and not colon:
             section = head.strip().upper()
             if section in sections:
@@ -86,7 +86,7 @@ def missing_part(file: BinaryIO) -> str:
     return _fault_of_files(folder, named, is_gold=form == _TYPES[-1])
 
 
-class _Line(NamedTuple):
+class _Entry(NamedTuple):
     """A line of a case: what is before and after its colon, and the kind of a variable."""
 
     head: bytes
@@ -99,7 +99,7 @@ class _Line(NamedTuple):
         return [word for word in self.rest.split() if not word.isdigit()]
 
 
-def _fault_of_files(folder: Path, named: list[_Line], *, is_gold: bool) -> str:
+def _fault_of_files(folder: Path, named: list[_Entry], *, is_gold: bool) -> str:
     """Return the reason why a file that a case names is not whole, or does not fit the geometry."""
     geometry: _Geometry | None = None
     for line in named:
