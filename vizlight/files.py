@@ -38,6 +38,7 @@ from vizlight.mesh import (
     georeference,
     height_grids,
     joining,
+    legacy_vtk,
     meaning,
     normals,
     records,
@@ -406,7 +407,7 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
             # VTK ends the process where it draws or writes them.
             raise FileError(f"cells that do not follow one another among {len(ids)} corners")
     check_whole(mesh, "mesh")
-    if lacking := short_files.missing_numbers(mesh, path):
+    if lacking := legacy_vtk.missing_numbers(mesh, path):
         raise FileError(lacking)
 
 

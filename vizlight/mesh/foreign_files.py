@@ -19,6 +19,7 @@ from vizlight.mesh import (
     abaqus,
     brains,
     cf_grids,
+    file_parts,
     geomview,
     georeference,
     meaning,
@@ -26,7 +27,6 @@ from vizlight.mesh import (
     ply,
     polylines,
     scene_files,
-    short_files,
     studio_3ds,
     su2,
     tetgen,
@@ -249,7 +249,7 @@ def _of_meshio(path: Path) -> pv.DataSet:
         raise ValueError("it has no cells")
     content = path.read_bytes()
     if b"\0" not in content:
-        short_files.warn_of_last_line(path, content)
+        file_parts.warn_of_last_line(path, content)
     data.cell_sets = {}
     _drop_short(data)
     for name in data.point_data.keys() & data.cell_data.keys():
