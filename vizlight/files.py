@@ -126,15 +126,6 @@ _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive
 DRAFTS, FRESH, ABANDONED = ".vizlight-file-", ".vizlight-new-", 60.0
 
 
-#: Ends of names of files of scenes that neither VTK nor meshio reads.
-_SCENES = (".3mf", ".blend", ".dae", ".fbx", ".ifc", ".x3d")
-#: Files of CAD, whose surfaces have no points.
-_SHAPES = (".step", ".stp", ".iges", ".igs", ".brep")
-#: Molecules and tables that no reader takes.
-_MOLECULES = (".mol", ".mol2", ".sdf", ".cif", ".gro", ".pqr", ".fchk", ".molden")
-_TABLES = (".csv", ".tsv", ".txt", ".xlsx", ".parquet", ".npy", ".npz")
-
-
 class FileError(ValueError):
     """A file cannot be read or written."""
 
@@ -436,7 +427,8 @@ def _whole(
         mesh = normals.welded(joining.without_ghosts(mesh))
     for path in overlays:
         if path.suffix.lower() in (*cf_grids.SUFFIXES, *georeference.SUFFIXES):
-            cf_grids.add(mesh, _found(path, time), path)
+            step = time if path.suffix.lower() in cf_grids.SUFFIXES else None
+            cf_grids.add(mesh, _found(path, step), path)
             continue
         arrays, meant = brains.overlay(path, mesh.n_points)
         for name, rows in arrays.items():
@@ -531,8 +523,6 @@ def _found(
     contents: pv.DataObject | None = foreign_files.read(path, time, at=at, nodata=nodata)
     contents = series.read(path, time) if contents is None else contents
     contents = _by_package(path) if contents is None else contents
-    if path.suffix.lower() in (".nrrd", ".nhdr") and isinstance(contents, pv.DataSet):
-        brains.name_segments(contents, path)
     if path.suffix.lower() in _MESHERS:
         # As a block it is reduced to its cells of the highest dimension, see
         # :func:`.blocks.one_grid`.
@@ -590,26 +580,34 @@ def _first_line(error: Exception | str) -> str:
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
 
 
+#: Ways to files of other formats, by the ends of their names.
+_WAYS: dict[tuple[str, ...], str] = {
+    (*_UNPACK, ".zip"): "unpack it first",
+    (".mol", ".mol2", ".sdf", ".cif", ".gro", ".pqr", ".fchk", ".molden"):
+        "Open Babel makes a .pdb of it: obabel '{name}' -O '{stem}.pdb'",
+    (".csv", ".tsv", ".txt", ".xlsx", ".parquet", ".npy", ".npz"):
+        "read its columns by NumPy or pandas, and look at a mesh of them: "
+        "mesh = pyvista.PolyData(rows of x, y, z), mesh['name'] = values",
+    (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",
+    (".step", ".stp", ".iges", ".igs", ".brep"):
+        "gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{name}' -o '{stem}.stl'",
+    (".3mf", ".blend", ".dae", ".fbx", ".ifc", ".x3d"):
+        "Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'",
+}  # fmt: skip
+_USUAL_WAY = (
+    "convert it to .ply, .obj, .stl, .vtu or .glb, or save its points as .vtp by "
+    "pyvista.PolyData(points, faces).save(...)"
+)
+
+
 def _by_package(path: Path) -> pv.DataObject:
     """Return the data of a file that VTK has no reader for, but a package such as meshio."""
     try:
         return pv.read(path, validate=False)
     except OSError as error:
-        usual = "convert it to .ply, .obj, .stl, .vtu or .glb, "
-        usual += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
-        columns = "read its columns by NumPy or pandas, and look at a mesh of them: "
-        columns += "mesh = pyvista.PolyData(rows of x, y, z), mesh['name'] = values"
-        name, stem = path.name, path.stem
-        mesh = "gmsh makes a mesh of it: gmsh"
-        ways = (
-            ((*_UNPACK, ".zip"), "unpack it first"),
-            (_MOLECULES, f"Open Babel makes a .pdb of it: obabel '{name}' -O '{stem}.pdb'"),
-            (_TABLES, columns),
-            ((".geo",), f"{mesh} -3 -format msh2 '{name}'"),
-            (_SHAPES, f"{mesh} -2 -clcurv 20 '{name}' -o '{stem}.stl'"),
-            (_SCENES, f"Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'"),
-        )
-        way = next((way for ends, way in ways if path.suffix.lower() in ends), usual)
+        suffix = path.suffix.lower()
+        way = next((way for ends, way in _WAYS.items() if suffix in ends), _USUAL_WAY)
+        way = way.replace("{name}", path.name).replace("{stem}", path.stem)
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 
 

@@ -27,6 +27,7 @@ from vizlight.mesh import (
     ply,
     polylines,
     scene_files,
+    series,
     studio_3ds,
     su2,
     tetgen,
@@ -109,6 +110,15 @@ def read(
     if nodata is not None and suffix not in georeference.SUFFIXES:
         expected = "expected a netCDF file or a raster beside it"
         raise ValueError(f"nodata: {expected}, got a {suffix} file; leave it out")
+    mesh = _of_other(path, time, nodata)
+    if mesh is not None and series.TIME not in mesh.field_data:
+        series.check_single(path, time)
+    return mesh
+
+
+def _of_other(path: Path, time: object, nodata: float | None) -> pv.DataSet | pv.MultiBlock | None:
+    """Return the mesh of a file that is none of netCDF."""
+    suffix = path.suffix.lower()
     if suffix in _BY_SUFFIX:
         return _BY_SUFFIX[suffix](path)
     if path.name.lower().endswith((".tt", ".tt.gz")):
@@ -530,5 +540,6 @@ _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = 
     ".pdb": molecules.of_pdb, ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
     ".3ds": studio_3ds.read,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
+    **dict.fromkeys((".nhdr", ".nrrd"), brains.image_of_nrrd),
     **dict.fromkeys(tetgen.SUFFIXES, tetgen.read),
 }  # fmt: skip
