@@ -1,4 +1,4 @@
-"""Cases of EnSight whose files are not whole, or do not fit each other.
+"""Cases of EnSight: files that are not whole, or do not fit each other.
 
 VTK's reader passes over parts and values whose keywords or counts are damaged, and ends the process
 at some. Source: EnSight User Manual, "EnSight Gold Casefile Format".

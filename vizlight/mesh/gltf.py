@@ -1,4 +1,4 @@
-"""Files of glTF whose parts do not fit those that they name."""
+"""Files of glTF with parts that do not fit those that they name."""
 
 from __future__ import annotations
 
