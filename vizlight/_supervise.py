@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Keywords
 
-__all__ = ["Doing", "end_with", "read_limit", "run", "stage"]
+__all__ = ["Doing", "end_with", "has_parent", "read_limit", "run", "stage"]
 
 Doing: TypeAlias = Literal["read", "write", "draw"]
 
@@ -70,6 +70,11 @@ def read_limit(size: int) -> float:
     except ValueError:
         base = READ_SECONDS
     return base + READ_SECONDS_PER_MB * size / 1e6
+
+
+def has_parent() -> bool:
+    """Return whether a parent waits for this process, which then may end at a damaged file."""
+    return _channel is not None
 
 
 @contextlib.contextmanager

@@ -10,8 +10,6 @@ import lzma
 import os
 import re
 import shutil
-import sys
-import threading
 import time
 import uuid
 import zlib
@@ -20,14 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.util.misc import calldata_type
-from vtkmodules.util.vtkConstants import VTK_STRING
-from vtkmodules.vtkCommonCore import (
-    vtkLogger,
-    vtkOutputWindow,
-    vtkStringOutputWindow,
-    vtkUnsignedCharArray,
-)
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
 from vizlight import _check, _supervise
 from vizlight.mesh import (
@@ -38,20 +29,28 @@ from vizlight.mesh import (
     georeference,
     height_grids,
     joining,
+    legacy_vtk,
     meaning,
     normals,
-    records,
     references,
     series,
     short_files,
 )
 from vizlight.mesh.creases import creases
+from vizlight.mesh.derived import (
+    check_dataset,
+    layer_of,
+    layers,
+    stretched,
+    surface_of,
+    warped,
+    with_vectors,
+)
 from vizlight.mesh.fills import without_fills
 from vizlight.mesh.molecules import backbone
-from vizlight.mesh.polylines import by_end
-from vizlight.mesh.subdivision import by_corner, simplices
+from vizlight.mesh.subdivision import simplices
+from vizlight.vtk import messages
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
-from vizlight.vtk.polylines import has_lines_only
 from vizlight.vtk.topology import place_numbers
 
 try:
@@ -62,7 +61,7 @@ except ImportError:  # on Windows
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from vizlight._types import Array, Foreign, Raw
+    from vizlight._types import Foreign, Raw
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
@@ -98,42 +97,23 @@ MOST_POINTS = 1 << 40
 FINE, SHORT = 1e-2, 5.0
 #: Number of cells of which the sides are measured.
 MEASURED = 1 << 16
-#: Cells with a face below and one above.
-PRISMS = {pv.CellType.WEDGE, pv.CellType.HEXAHEDRON}
 #: Thickness of the base of a solid below a height field, as a share of its longer side.
 BASE = 0.02
 SUFFIXES = tuple(dict.fromkeys(suffix for kind in FORMATS.values() for suffix in kind))
 
 
-#: Where VTK says that an error or a warning arose, which stands before what it says.
-_ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
-
-
-#: Where an object of VTK is in memory, and what it was asked for.
-_ADDRESS = re.compile(r" \(0x[0-9a-f]+\)| for request: vtkInformation.*| when asked by REQUEST.*")
-
-
-#: What VTK says of files that are whole: importers of VRML and 3DS make a window that none needs,
-#: keys of ParaView's, of NRRD and ranges of NaN are metadata, conditions at the boundary of CGNS no
-#: cells, percentages of 3DS parts of materials.
+#: What VTK says of files that are whole: its importer of VRML makes a window that none needs, keys
+#: of ParaView's, of NRRD and ranges of NaN are metadata, conditions at the boundary of CGNS no
+#: cells.
 _HARMLESS = re.compile(
     "bad X server connection|Could not locate key|Error reading InformationKey|Skipping BC_t node"
-    "|glTF extension .* is used in|Error parsing percentage|Unknown field: '[^:]*:="
+    "|glTF extension .* is used in|Unknown field: '[^:]*:="
 )
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
 #: Begin of the names of temporary folders, of those without a lock yet, and the time in seconds
 #: after which one of these is swept.
 DRAFTS, FRESH, ABANDONED = ".vizlight-file-", ".vizlight-new-", 60.0
-
-
-#: Ends of names of files of scenes that neither VTK nor meshio reads.
-_SCENES = (".3mf", ".blend", ".dae", ".fbx", ".ifc", ".x3d")
-#: Files of CAD, whose surfaces have no points.
-_SHAPES = (".step", ".stp", ".iges", ".igs", ".brep")
-#: Molecules and tables that no reader takes.
-_MOLECULES = (".mol", ".mol2", ".sdf", ".gro", ".pqr", ".fchk", ".molden")
-_TABLES = (".csv", ".tsv", ".txt", ".xlsx", ".parquet", ".npy", ".npz")
 
 
 class FileError(ValueError):
@@ -276,16 +256,16 @@ def _read(
         return _unpacked(path, lambda file: _read(file, time, overlays, at, nodata, whole=whole))
     reason, notes = "no points", list[str]()
     meshes: list[Foreign] = []
-    # A file that is cut short may end the process inside its reader, and is refused before that.
-    if short := short_files.missing_part(path):
-        raise _damaged(path, short)
-    # VTK ends the process where a piece of a grid has an error.
-    for piece in references.named(path) if path.suffix.lower() in GRID_PIECES else ():
-        _read(piece, None, (), whole=True)
     limit = _supervise.read_limit(path.stat().st_size)
     reading = _supervise.stage("read", path, seconds=limit)
     # Damaged numbers overflow in readers, which say what is wrong beside that.
-    with reading, captured_errors() as errors, np.errstate(all="ignore"):
+    with reading, messages.captured_errors() as errors, np.errstate(all="ignore"):
+        # A file that is cut short may end the process inside its reader, and is refused before.
+        if short := short_files.missing_part(path):
+            raise _damaged(path, short)
+        # VTK ends the process where a piece of a grid has an error.
+        for piece in references.named(path) if path.suffix.lower() in GRID_PIECES else ():
+            _read(piece, None, (), whole=True)
         try:
             data: Foreign = _found(path, time, at, nodata)
             if _faults(errors):
@@ -299,7 +279,7 @@ def _read(
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
             kind = "" if isinstance(error, FileError) else f"{type(error).__name__}: "
-            reason = f"{kind}{_first_line(error)}"
+            reason = f"{kind}{messages.first_line(error)}"
             meshes = []
         except SystemExit as error:  # so ends meshio where it finds a fault
             reason = f"its reader ended with {error.code}"
@@ -410,7 +390,7 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
             # VTK ends the process where it draws or writes them.
             raise FileError(f"cells that do not follow one another among {len(ids)} corners")
     check_whole(mesh, "mesh")
-    if lacking := short_files.missing_numbers(mesh, path):
+    if lacking := legacy_vtk.missing_numbers(mesh, path):
         raise FileError(lacking)
 
 
@@ -439,7 +419,8 @@ def _whole(
         mesh = normals.welded(joining.without_ghosts(mesh))
     for path in overlays:
         if path.suffix.lower() in (*cf_grids.SUFFIXES, *georeference.SUFFIXES):
-            cf_grids.add(mesh, _found(path, time), path)
+            step = time if path.suffix.lower() in cf_grids.SUFFIXES else None
+            cf_grids.add(mesh, _found(path, step), path)
             continue
         arrays, meant = brains.overlay(path, mesh.n_points)
         for name, rows in arrays.items():
@@ -515,7 +496,7 @@ def _unpacked(path: Path, read: Callable[[Path], list[pv.DataSet]]) -> list[pv.D
                     if file.tell() > MOST_UNPACKED:
                         raise _damaged(path, f"more than {MOST_UNPACKED} bytes are in it")
         except (OSError, EOFError, lzma.LZMAError, zlib.error) as error:
-            raise _damaged(path, _first_line(error)) from error
+            raise _damaged(path, messages.first_line(error)) from error
         try:
             with _check.held(str(inner), str(path)):
                 return read(inner)
@@ -534,8 +515,6 @@ def _found(
     contents: pv.DataObject | None = foreign_files.read(path, time, at=at, nodata=nodata)
     contents = series.read(path, time) if contents is None else contents
     contents = _by_package(path) if contents is None else contents
-    if path.suffix.lower() in (".nrrd", ".nhdr") and isinstance(contents, pv.DataSet):
-        brains.name_segments(contents, path)
     if path.suffix.lower() in _MESHERS:
         # As a block it is reduced to its cells of the highest dimension, see
         # :func:`.blocks.one_grid`.
@@ -576,21 +555,29 @@ def _path(name: str, value: object) -> Path:
     return path
 
 
-def _dataset(mesh: object) -> None:
-    """Check that a mesh is one dataset that VTK can read."""
-    if not isinstance(mesh, pv.DataSet):
-        remedy = "join its blocks by mesh.combine()" if isinstance(mesh, pv.MultiBlock) else ""
-        raise TypeError(_check.message("mesh", "a PyVista dataset", type(mesh).__name__, remedy))
-    check_whole(mesh, "mesh")
-
-
 def _damaged(path: Path, reason: str) -> FileError:
     got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
     return FileError(_check.message("file", "a file that is not damaged", got, remedy))
 
 
-def _first_line(error: Exception | str) -> str:
-    return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
+#: Ways to files of other formats, by the ends of their names.
+_WAYS: dict[tuple[str, ...], str] = {
+    (*_UNPACK, ".zip"): "unpack it first",
+    (".mol", ".mol2", ".sdf", ".gro", ".pqr", ".fchk", ".molden"):
+        "Open Babel makes a .pdb of it: obabel '{name}' -O '{stem}.pdb'",
+    (".csv", ".tsv", ".txt", ".xlsx", ".parquet", ".npy", ".npz"):
+        "read its columns by NumPy or pandas, and look at a mesh of them: "
+        "mesh = pyvista.PolyData(rows of x, y, z), mesh['name'] = values",
+    (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",
+    (".step", ".stp", ".iges", ".igs", ".brep"):
+        "gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{name}' -o '{stem}.stl'",
+    (".3mf", ".blend", ".dae", ".fbx", ".ifc", ".x3d"):
+        "Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'",
+}  # fmt: skip
+_USUAL_WAY = (
+    "convert it to .ply, .obj, .stl, .vtu or .glb, or save its points as .vtp by "
+    "pyvista.PolyData(points, faces).save(...)"
+)
 
 
 def _by_package(path: Path) -> pv.DataObject:
@@ -598,21 +585,9 @@ def _by_package(path: Path) -> pv.DataObject:
     try:
         return pv.read(path, validate=False)
     except OSError as error:
-        usual = "convert it to .ply, .obj, .stl, .vtu or .glb, "
-        usual += "or save its points as .vtp by pyvista.PolyData(points, faces).save(...)"
-        columns = "read its columns by NumPy or pandas, and look at a mesh of them: "
-        columns += "mesh = pyvista.PolyData(rows of x, y, z), mesh['name'] = values"
-        name, stem = path.name, path.stem
-        mesh = "gmsh makes a mesh of it: gmsh"
-        ways = (
-            ((*_UNPACK, ".zip"), "unpack it first"),
-            (_MOLECULES, f"Open Babel makes a .pdb of it: obabel '{name}' -O '{stem}.pdb'"),
-            (_TABLES, columns),
-            ((".geo",), f"{mesh} -3 -format msh2 '{name}'"),
-            (_SHAPES, f"{mesh} -2 -clcurv 20 '{name}' -o '{stem}.stl'"),
-            (_SCENES, f"Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'"),
-        )
-        way = next((way for ends, way in ways if path.suffix.lower() in ends), usual)
+        suffix = path.suffix.lower()
+        way = next((way for ends, way in _WAYS.items() if suffix in ends), _USUAL_WAY)
+        way = way.replace("{name}", path.name).replace("{stem}", path.stem)
         raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
 
 
@@ -635,381 +610,6 @@ def _left_out(data: pv.MultiBlock, meshes: Sequence[pv.DataSet]) -> list[str]:
     lost = {name for block, _ in lower for name in _arrays(block)}
     lost -= {name for mesh in meshes for name in _arrays(mesh)}
     return [f"arrays of side sets alone are left out: {', '.join(sorted(lost))}"] if lost else []
-
-
-class _Messages:
-    """Messages of VTK while files are read and written, by thread.
-
-    VTK has one window for the messages of a process. It is replaced while any thread listens;
-    messages of other threads go on to the earlier window. No stream is redirected.
-    """
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._heard: dict[int, list[list[str]]] = {}
-        self._replaced: tuple[vtkOutputWindow, vtkLogger.Verbosity] | None = None
-
-    @contextlib.contextmanager
-    def collected(self) -> Iterator[list[str]]:
-        """Collect the errors and warnings of VTK that arise in this thread, each as one line."""
-        thread = threading.get_ident()
-        errors: list[str] = []
-        with self._lock:
-            # The first that listens puts its window in place of the user's, and the last one puts
-            # that back.
-            if self._replaced is None:
-                self._replaced = (
-                    vtkOutputWindow.GetInstance(),
-                    vtkLogger.GetCurrentVerbosityCutoff(),
-                )
-                listening = vtkStringOutputWindow()
-                heard: Foreign = self._note
-                for event in ("ErrorEvent", "WarningEvent"):
-                    listening.AddObserver(event, heard)  # type: ignore[arg-type]
-                vtkOutputWindow.SetInstance(listening)
-                # VTK's logger would print each message to standard error beside that.
-                vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-            # One thread may listen in several contexts: the innermost hears.
-            self._heard.setdefault(thread, []).append(errors)
-        try:
-            yield errors
-        finally:
-            with self._lock:
-                open_lists = self._heard[thread]
-                open_lists.pop()
-                if not open_lists:
-                    del self._heard[thread]
-                if not self._heard and self._replaced is not None:
-                    window, verbosity = self._replaced
-                    self._replaced = None
-                    vtkOutputWindow.SetInstance(window)
-                    vtkLogger.SetStderrVerbosity(verbosity)
-
-    @calldata_type(VTK_STRING)  # type: ignore[no-untyped-call, untyped-decorator]
-    def _note(self, _window: object, event: str, text: str | None) -> None:
-        text = text or "words that are no text"
-        open_lists, replaced = self._heard.get(threading.get_ident()), self._replaced
-        if open_lists:
-            open_lists[-1].append(_first_line(_ADDRESS.sub("", _ORIGIN.sub("", text))))
-        elif replaced is not None:
-            sys.stderr.write(text)
-            replaced[0].InvokeEvent(event, text)
-
-
-captured_errors = _Messages().collected
-
-
-def surface_of(
-    mesh: pv.DataSet | pv.MultiBlock,
-    /,
-    contour: str | None = None,
-    level: float | None = None,
-    labels: str | None = None,
-) -> pv.PolyData:
-    """Return an isosurface of a mesh, the boundary of labels, or its outer surface.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet or pyvista.MultiBlock
-        Mesh, which is not changed.
-    contour : str, optional
-        Name of an array of one component; one of cells is averaged to the points.
-    level : float, optional
-        Value of the array on the isosurface. Default: the middle of its range.
-    labels : str, optional
-        Name of an array of labels, which are then those of the cells. In an image that fills space,
-        such as an atlas of a brain, they are whole numbers of which 0 is the ground: the surface of
-        all others is smoothed within the size of a voxel. Elsewhere each point of the surface
-        labels the cells nearest to it, so that no cell has a label between two; of lines each end
-        of a segment labels its half.
-
-    Returns
-    -------
-    pyvista.PolyData
-
-    Raises
-    ------
-    ValueError
-        If the array does not exist, or the isosurface is empty.
-    """
-    if labels is not None:
-        return _of_labels(mesh, _check.text("labels", labels))
-    if isinstance(mesh, pv.MultiBlock):
-        mesh = blocks.one_grid(mesh)
-    _dataset(mesh)
-    if contour is None:
-        if isinstance(mesh, pv.PolyData):
-            return mesh
-        return blocks.outer_surface(mesh)[0]
-    mesh = records.averaged(mesh, _check.text("contour", contour))
-    values = _scalars(mesh, "contour", contour)
-    finite = values[np.isfinite(values)]
-    if not finite.size:
-        raise ValueError(_check.message("contour", "an array with finite values", repr(contour)))
-    low, high = float(finite.min()), float(finite.max())
-    level = (low + high) / 2 if level is None else _check.number("level", level)
-    surface = blocks.isosurface(mesh, contour, level)
-    if not surface.n_points:
-        expected = f"a value between {low:g} and {high:g}"
-        raise ValueError(_check.message("level", expected, f"{level:g}"))
-    # Beside a hole VTK makes faces with corners that are nowhere.
-    there: Foreign = np.isfinite(np.asarray(surface.points)).all(axis=1)
-    return surface if there.all() else _kept_points(surface, there)
-
-
-def _of_labels(mesh: pv.DataSet | pv.MultiBlock, name: str) -> pv.PolyData:
-    """Return the surface of labelled cells, with labels of its own cells."""
-    if not isinstance(mesh, pv.ImageData) or min(mesh.dimensions) == 1:
-        surface = surface_of(mesh)
-        _scalars(surface, "labels", name)
-        if name not in surface.point_data:
-            return surface
-        return (by_end if has_lines_only(surface) else by_corner)(surface, name)
-    if name not in mesh.point_data and name in mesh.cell_data:
-        # Each cell becomes a point at its middle.
-        mesh = mesh.cells_to_points(name)
-    values = _scalars(mesh, "labels", name)
-    if values.dtype.kind not in "iu" or not values.any():
-        got = f"{name!r} of {values.dtype}"
-        raise ValueError(_check.message("labels", "whole numbers that are not all 0", got))
-    boundary: pv.PolyData = mesh.contour_labels(scalars=name, output_mesh_type="triangles")
-    rows = np.asarray(boundary.cell_data["boundary_labels"])
-    boundary.clear_data()
-    boundary.cell_data[name] = rows
-    georeference.place_alike(boundary, mesh)
-    return boundary
-
-
-def _kept_points(mesh: pv.PolyData, kept: Foreign) -> pv.PolyData:
-    """Return the cells of a mesh with all their points kept, and their arrays."""
-    cells = mesh.extract_points(
-        kept, adjacent_cells=False, pass_point_ids=False, pass_cell_ids=False
-    )
-    surface: pv.PolyData = cells.extract_surface(
-        algorithm="dataset_surface", pass_pointid=False, pass_cellid=False
-    )
-    return surface
-
-
-def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
-    """Return a mesh with a point array of vectors, given the names of their components.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh, which is not changed.
-    names : str or sequence of str
-        Names of two or three arrays of one component, separated by commas, such as ``"u,v"``,
-        which is the name of the vectors too; or that of vectors of two components. A third
-        component that is missing is 0. Arrays of cells are averaged to the points.
-
-    Returns
-    -------
-    pyvista.DataSet
-        Mesh with the vectors, NaN where a component is not finite; the mesh itself if it has an
-        array of this name, as that of a wind on turned axes, which points where it is drawn.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an array does not exist, or their number is not two or three.
-    """
-    _dataset(mesh)
-    if isinstance(names, list | tuple):
-        names = ",".join(map(str, names))
-    names = _check.text("names", names, expected="names of arrays, separated by commas")
-    if names in mesh.array_names:
-        return meaning.with_named(mesh, names)[0]
-    every = names.split(",")
-    if len(every) not in (2, 3):
-        raise ValueError(_check.message("names", "two or three names", repr(names)))
-    # The array is attached to a shallow copy, so that the caller's mesh does not get it.
-    out = records.averaged(mesh, *every).copy(deep=False)
-    for name in every:
-        _scalars(out, "names", name)
-    out.point_data[names] = meaning.vectors(out, every)
-    return out
-
-
-def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
-    """Return a mesh with points raised by heights, or displaced by vectors.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh, which is not changed. A map in degrees becomes one in metres about its centre.
-    name : str
-        Name of the array of heights, or of three components in floating point. Cells at values
-        that are not finite are left out.
-    factor : float
-        Length in the unit of the mesh that corresponds to one unit of the array.
-
-    Returns
-    -------
-    pyvista.DataSet
-
-    Raises
-    ------
-    ValueError
-        If the array does not exist or has no finite value, or the factor is not finite.
-    """
-    _dataset(mesh)
-    mesh = records.averaged(mesh, name)
-    _check.text("warp", name, expected="the name of a point array")
-    rows = np.asarray(mesh.point_data[name]) if name in mesh.point_data else np.empty(0)
-    if rows.dtype.kind != "f" or rows.shape[1:] != (3,):
-        rows = np.asarray(_scalars(mesh, "warp", name))[:, np.newaxis]
-    holes = ~np.isfinite(rows).all(axis=1)
-    factor = _check.number("exaggeration", factor)
-    # Over degrees, each some 111 km, heights in metres would stand as needles.
-    mesh = georeference.in_metres(mesh)
-    if holes.all():
-        raise ValueError(_check.message("warp", "an array with finite values", repr(name)))
-    is_grid = isinstance(mesh, pv.ImageData | pv.RectilinearGrid)
-    if is_grid or rows.shape[1] == 3:
-        # VTK raises grids to float32, which is coarse far from the origin.
-        points = np.array(mesh.points, dtype=np.float64)
-        # Heights move the last axis, and vectors move all three.
-        points[:, -rows.shape[1] :] += factor * rows
-        moved: Foreign = mesh.cast_to_structured_grid() if is_grid else mesh.copy(deep=False)
-        # A shallow copy has the points of the mesh itself, and gets others in their place.
-        moved.SetPoints(pv.vtk_points(points))
-    else:
-        moved = mesh.warp_by_scalar(name, factor=factor)
-    out: pv.DataSet = moved
-    # Cells at a hole go, whatever their other points are.
-    return out.extract_points(~holes, adjacent_cells=False) if holes.any() else out
-
-
-def layers(mesh: pv.DataSet, /) -> int:
-    """Return the number of layers of a volume, 0 where it has none.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Image or grid, or unstructured grid of prisms between levels.
-    """
-    if isinstance(mesh, pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid):
-        return mesh.dimensions[2] if min(mesh.dimensions) > 1 else 0
-    return len(_levels(mesh))
-
-
-def _levels(mesh: pv.DataSet) -> Array:
-    """Return the heights of the levels between which all cells are, empty without any."""
-    prisms = isinstance(mesh, pv.UnstructuredGrid) and {*mesh.distinct_cell_types} <= PRISMS
-    if not prisms or not mesh.n_cells:
-        return np.empty(0)
-    levels: Array = np.unique(np.asarray(mesh.points, dtype=np.float64)[:, 2])
-    # The points of other volumes are at nearly as many heights as there are points.
-    return levels if len(levels) ** 2 < mesh.n_points else np.empty(0)
-
-
-def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.StructuredGrid | pv.PolyData:
-    """Return one layer of a grid across its last axis, with its arrays.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Image, rectilinear or structured grid, or unstructured one of prisms between levels, which
-        is not changed.
-    at : int
-        Number of the layer, from 0 where z is least.
-
-    Returns
-    -------
-    pyvista.RectilinearGrid, pyvista.StructuredGrid or pyvista.PolyData
-        Grid of one layer, or the faces of prisms in it; values of cells are those above it, below
-        the last layer.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the mesh is no such grid, or has no such layer.
-    """
-    if isinstance(mesh, pv.ImageData):
-        mesh = mesh.cast_to_rectilinear_grid()
-    if isinstance(mesh, pv.UnstructuredGrid) and len(levels := _levels(mesh)):
-        at = _check.integer("at", at, low=0, high=len(levels) - 1)
-        return _faces_at(mesh, levels, at)
-    if not isinstance(mesh, pv.RectilinearGrid | pv.StructuredGrid):
-        got = type(mesh).__name__
-        raise TypeError(_check.message("mesh", "an image or a grid", got))
-    nx, ny, nz = mesh.dimensions
-    at = _check.integer("at", at, low=0, high=nz - 1)
-    layer: pv.RectilinearGrid | pv.StructuredGrid
-    if isinstance(mesh, pv.RectilinearGrid):
-        layer = pv.RectilinearGrid(mesh.x, mesh.y, mesh.z[at : at + 1])
-    else:
-        layer = pv.StructuredGrid()
-        layer.points = np.array(mesh.points[at * nx * ny : (at + 1) * nx * ny])
-        layer.dimensions = (nx, ny, 1)
-    cells = max(nx - 1, 1) * max(ny - 1, 1)
-    places = (
-        (mesh.point_data, layer.point_data, at, nx * ny),
-        (mesh.cell_data, layer.cell_data, min(at, max(nz - 2, 0)), cells),
-    )
-    for data, into, number, count in places:
-        for name in data:
-            into[name] = np.array(data[name][number * count : (number + 1) * count])
-    for name in mesh.field_data:
-        layer.field_data[name] = mesh.field_data[name]
-    return layer
-
-
-def _faces_at(mesh: pv.UnstructuredGrid, levels: Array, at: int) -> pv.PolyData:
-    """Return the faces of prisms at a level, of the cells above it, below the last level."""
-    ids, ends = connectivity(mesh.GetCells())
-    heights = np.asarray(mesh.points, dtype=np.float64)[:, 2]
-    lowest = np.minimum.reduceat(heights[ids], ends[:-1])
-    chosen: Foreign = np.flatnonzero(lowest == levels[min(at, len(levels) - 2)])
-    cells = mesh.extract_cells(chosen, pass_point_ids=False, pass_cell_ids=False)
-    surface: pv.PolyData = cells.extract_surface(
-        algorithm="dataset_surface", pass_pointid=False, pass_cellid=False
-    )
-    there: Foreign = np.asarray(surface.points, dtype=np.float64)[:, 2] == levels[at]
-    return _kept_points(surface, there)
-
-
-def stretched(mesh: pv.DataSet, factor: float, /) -> pv.DataSet:
-    """Return a volume over a map in degrees in metres, its z times a factor.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh, which is not changed.
-    factor : float
-        Factor of z.
-
-    Returns
-    -------
-    pyvista.DataSet
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is no dataset, or the factor is not finite and positive.
-    """
-    _dataset(mesh)
-    factor = _check.positive("factor", factor)
-    return blocks.moved(georeference.in_metres(mesh), np.zeros(3), np.array([1.0, 1.0, factor]))
-
-
-def _scalars(mesh: pv.DataSet, argument: str, name: str) -> Raw:
-    """Return a point array of one component, or raise an error that names the argument."""
-    data = mesh.point_data
-    _check.text(argument, name, expected="the name of a point array")
-    names = [key for key in (*data, *mesh.cell_data) if _are_numbers(mesh[key])]
-    if name in data and name in names:
-        return data[name]
-    got = repr(name)
-    if name in data:
-        got = f"{name!r} of {_check.describe(data[name])}"
-    expected = f"an array of one component, {_check.one_of(names)}"
-    raise ValueError(_check.message(argument, expected, got))
-
-
-def _are_numbers(values: Raw) -> bool:
-    return values.ndim == 1 and values.dtype.kind in "biuf"
 
 
 def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "output") -> Path:
@@ -1060,7 +660,7 @@ def check_format(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         If the format does not support the type of mesh.
     """
     for block in blocks.all_blocks(mesh) if isinstance(mesh, pv.MultiBlock) else [mesh]:
-        _dataset(block)
+        check_dataset(block)
     path, kind = _path("output", path), type(mesh).__name__
     if kind not in FORMATS:
         expected = f"one of {', '.join(FORMATS)}"
@@ -1113,7 +713,7 @@ def write_mesh(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
     def save(draft: str) -> None:
         _reserve(Path(draft), blocks.all_blocks(mesh))
         copies = blocks.like(mesh, map(_to_save, blocks.all_blocks(mesh)))
-        with captured_errors() as errors:
+        with messages.captured_errors() as errors:
             copies.save(draft)
         # VTK writes the files of the blocks to a folder that has the name of the draft.
         files = sorted(Path(draft).with_suffix("").glob("*"))

@@ -405,6 +405,13 @@ def test_points_of_a_lidar(tmp_path, name):
     assert mesh["color"].tolist() == [[255, 1, 0], [0, 2, 255]]
 
 
+def test_a_step_of_a_file_that_has_none(tmp_path):
+    (tmp_path / "a.xyz").write_text("0 0 0\n1 2 3\n")
+    assert vizlight.read(tmp_path / "a.xyz", time="first").n_points == 2
+    with pytest.raises(ValueError, match=r"time: expected a file of several steps, got 'a\.xyz'"):
+        vizlight.read(tmp_path / "a.xyz", time=3)
+
+
 def test_points_in_lines_of_text(tmp_path):
     (tmp_path / "a.xyz").write_text("0 0 0 10 20 30\n1 2 3 40 50 60\n")
     mesh = vizlight.read(tmp_path / "a.xyz")

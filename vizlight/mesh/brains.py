@@ -200,8 +200,6 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
         width = float(zooms[3]) if len(zooms) > 3 and zooms[3] > 0 else 1.0
         times = [width * i for i in range(steps)]
         index = series.chosen(times, time)
-    elif time not in (None, "first", "last"):
-        raise series.NoStepError(f"time: expected a file of several steps, got '{path.name}'")
     # Slices of the proxy read a single step of the file.
     rows = np.asanyarray(part[..., index] if len(shape) == 4 else part)
     # A vector at each voxel has its components on the fifth axis.
@@ -412,16 +410,20 @@ def tracks_of_tt(path: Path) -> tuple[AnyArray, AnyArray, AnyArray]:
     return points, np.cumsum(counts) - counts, counts
 
 
-def name_segments(image: pv.DataSet, path: Path) -> None:
-    """Give labels of an NRRD file the names and colours of its segments, as 3D Slicer writes them.
+def image_of_nrrd(path: Path) -> pv.DataSet:
+    """Return an image; labels have the names and colours of segments, as 3D Slicer writes them.
 
     Parameters
     ----------
-    image : pyvista.DataSet
-        Contents of the file; its array of labels is named "segment" if there are segments.
     path : pathlib.Path
-        Path of the file.
+        Path of the file. The array of labels is named "segment" if it has segments.
     """
+    image: pv.DataSet = pv.read(path, validate=False)
+    _name_segments(image, path)
+    return image
+
+
+def _name_segments(image: pv.DataSet, path: Path) -> None:
     with path.open("rb") as file:
         head = file.read(1 << 16).partition(b"\n\n")[0].decode("utf-8", "replace")
     parts: dict[str, dict[str, str]] = {}

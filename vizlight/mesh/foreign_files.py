@@ -20,6 +20,7 @@ from vizlight.mesh import (
     brains,
     cf_grids,
     density_maps,
+    file_parts,
     geomview,
     georeference,
     meaning,
@@ -27,7 +28,8 @@ from vizlight.mesh import (
     ply,
     polylines,
     scene_files,
-    short_files,
+    series,
+    studio_3ds,
     su2,
     tetgen,
 )
@@ -112,6 +114,15 @@ def read(
     if nodata is not None and suffix not in georeference.SUFFIXES:
         expected = "expected a netCDF file or a raster beside it"
         raise ValueError(f"nodata: {expected}, got a {suffix} file; leave it out")
+    mesh = _of_other(path, time, nodata)
+    if mesh is not None and series.TIME not in mesh.field_data:
+        series.check_single(path, time)
+    return mesh
+
+
+def _of_other(path: Path, time: object, nodata: float | None) -> pv.DataSet | pv.MultiBlock | None:
+    """Return the mesh of a file that is none of netCDF."""
+    suffix = path.suffix.lower()
     if suffix in _BY_SUFFIX:
         return _BY_SUFFIX[suffix](path)
     if path.name.lower().endswith((".tt", ".tt.gz")):
@@ -252,7 +263,7 @@ def _of_meshio(path: Path) -> pv.DataSet:
         raise ValueError("it has no cells")
     content = path.read_bytes()
     if b"\0" not in content:
-        short_files.warn_of_last_line(path, content)
+        file_parts.warn_of_last_line(path, content)
     data.cell_sets = {}
     _drop_short(data)
     for name in data.point_data.keys() & data.cell_data.keys():
@@ -533,6 +544,8 @@ _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = 
     ".pdb": molecules.of_pdb, ".ent": molecules.of_pdb, ".cif": molecules.of_cif,
     ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
     **dict.fromkeys(density_maps.SUFFIXES, density_maps.read),
+    ".3ds": studio_3ds.read,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
+    **dict.fromkeys((".nhdr", ".nrrd"), brains.image_of_nrrd),
     **dict.fromkeys(tetgen.SUFFIXES, tetgen.read),
 }  # fmt: skip

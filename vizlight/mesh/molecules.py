@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkMolecule
 from vtkmodules.vtkFiltersGeneral import vtkSplineFilter
 
 from vizlight import _check
-from vizlight.mesh import meaning, polylines, short_files
+from vizlight.mesh import file_parts, meaning, polylines
 from vizlight.model import formulas
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def of_pdb(path: Path) -> pv.PolyData:
         If there are no atoms, or columns of one are no numbers.
     """
     data = path.read_bytes()
-    short_files.warn_of_last_line(path, data)
+    file_parts.warn_of_last_line(path, data)
     lines = data.decode("latin-1").splitlines()
     ends = [i for i, line in enumerate(lines) if line.startswith("ENDMDL")]
     if len(ends) > 1:

@@ -14,7 +14,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import blocks, short_files
+from vizlight.mesh import blocks, file_parts
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -136,7 +136,7 @@ def _read_text(data: bytes, elements: list[_Element], path: Path) -> None:
             for i, (name, kind) in enumerate(element.kinds.items()):
                 element.columns[name] = _numbers([row[i] for row in rows], kind)
     if first == len(lines) and lines:
-        short_files.warn_of_last_line(path, data)
+        file_parts.warn_of_last_line(path, data)
     # Other lines are comments of other programs.
     elif (more := sum(_NUMBER.match(line) is not None for line in lines[first:])) > 0:
         _check.warn(f"file: '{path}' has {more} lines more than it states, which are left out")

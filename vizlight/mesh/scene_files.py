@@ -1,4 +1,4 @@
-"""Files of scenes, VRML and 3DS: each shape placed by its transforms."""
+"""Files of scenes of VRML: each shape placed by its transforms."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Foreign, Raw
 
-SUFFIXES = (".wrl", ".vrml", ".3ds")
+SUFFIXES = (".wrl", ".vrml")
 #: VTK's parser of VRML keeps its state in variables of the process.
 _LOCK = threading.Lock()
 #: Texts of VRML 2, and commas and comments, which stand for a gap: VTK takes few commas.
@@ -67,15 +67,8 @@ def read(path: Path) -> pv.MultiBlock:
     ValueError
         If it is of the first version of VRML.
     """
-    from vtkmodules.vtkIOImport import vtk3DSImporter
-
     with _LOCK, _supervise.folder(path) as folder:
-        if path.suffix.lower() == ".3ds":
-            importer: Foreign = vtk3DSImporter()
-            importer.SetFileName(str(path))
-            every = _imported(importer)
-        else:
-            every = _of_vrml(path, folder / "scene.wrl")
+        every = _of_vrml(path, folder / "scene.wrl")
     shapes = pv.MultiBlock(
         [
             # Normals are turned as normals, which a scale of unequal factors leaves upright.

@@ -359,6 +359,18 @@ def unchecked(reader: Foreign) -> Foreign:
     return reader.read(validate=False) if isinstance(reader, pv.BaseReader) else reader.read()
 
 
+def check_single(path: Path, time: object) -> None:
+    """Raise NoStepError if a step is asked for of a file of one mesh, which is the first and last.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    time : float, int or str, optional
+    """
+    if time not in (None, "first", "last"):
+        raise NoStepError(_check.message("time", "a file of several steps", f"'{path.name}'"))
+
+
 def read(path: Path, time: object) -> pv.DataObject | None:
     """Return the mesh of a file, of a step if it has steps; None where VTK has no reader.
 
@@ -376,9 +388,7 @@ def read(path: Path, time: object) -> pv.DataObject | None:
     reader = reader_of(path)
     times = times_of(reader)
     if reader is None or not times:
-        # Of a single mesh the first step and the last one are the mesh itself.
-        if time not in (None, "first", "last"):
-            raise NoStepError(_check.message("time", "a file of several steps", f"'{path.name}'"))
+        check_single(path, time)
         whole: pv.DataObject | None = None if reader is None else unchecked(reader)
         return whole
     index = chosen(times, time)

@@ -6,14 +6,8 @@ the process by, or never end on.
 
 from __future__ import annotations
 
-import contextlib
-import graphlib
 import gzip
-import itertools
-import json
 import math
-import mmap
-import os
 import re
 import struct
 import subprocess
@@ -22,32 +16,20 @@ import zipfile
 import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
-from urllib.parse import unquote
 
 import numpy as np
-import pyvista as pv
-from vtkmodules.vtkCommonDataModel import VTK_POLYHEDRON
 
-from vizlight import _check
-from vizlight.mesh import references, series
-from vizlight.vtk.cells import cell_arrays, connectivity, points_of_type
+from vizlight import _check, _supervise
+from vizlight.mesh import ensight, file_parts, gltf, legacy_vtk, references
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Sequence
 
-    from vizlight._types import Foreign, Indices, Keywords
 
-__all__ = ["missing_numbers", "missing_part", "warn_of_last_line"]
+__all__ = ["missing_part"]
 
 #: Bytes in which a header stands that has no end of its own.
 _HEAD = 4096
-#: Bytes of a number by a part of the name of its type: the first that is in it.
-_BYTES = {
-    "64": 8, "32": 4, "16": 2, "int8": 1, "idtype": 4, "char": 1, "short": 2, "long_long": 8,
-    "long long": 8, "longlong": 8, "long": 4, "int": 4, "float": 4, "double": 8,
-}  # fmt: skip
-#: Bytes at the end of a file in which its last words stand.
-_END = 512
 #: Largest ratio of data to what a compressor of VTK makes of them.
 _PACKED = 8000
 #: Ends of names of files that name their pieces, all of which are read.
@@ -86,37 +68,17 @@ def missing_part(path: Path, /) -> str:
     return lacking
 
 
-def warn_of_last_line(path: Path, data: bytes) -> None:
-    """Warn of a text without a line break at its end, which may be cut in its last number.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file.
-    data : bytes
-        Its content.
-    """
-    if not data.endswith((b"\n", b"\r")):
-        _check.warn(f"file: '{path}' may be cut in its last line, which has no line break")
-
-
-def _last(file: BinaryIO) -> bytes:
-    """Return the last bytes of a file."""
-    file.seek(-min(_END, file.seek(0, 2)), 2)
-    return file.read()
-
-
 def _xml(file: BinaryIO) -> str:
     """Look for the end of a file, which stands after its data."""
     if not file.read(100).lstrip().startswith((b"<?xml", b"<VTKFile")):
         return ""  # VTK's reader says so
-    if b"</VTKFile>" not in _last(file):
+    if b"</VTKFile>" not in file_parts.last(file):
         return "its end is missing"
     # What is packed is at most so much larger.
     most, wrong = _PACKED * file.seek(0, 2), ""
-    with _mapped(file) as text:
+    with file_parts.mapped(file) as text:
         for start in (b" NumberOf", b" index="):
-            for match in (_COUNT.match(text, at) for at in _places(text, start)):
+            for match in (_COUNT.match(text, at) for at in file_parts.places(text, start)):
                 # Each block takes some bytes, but for those that are empty.
                 limit = len(text) if start == b" index=" else most
                 if match and not 0 <= int(match[2]) <= limit:
@@ -135,7 +97,7 @@ def _grid(file: BinaryIO) -> str:
     """
     if lacks := _xml(file):
         return lacks
-    with _mapped(file) as text:
+    with file_parts.mapped(file) as text:
         # Binary data follow.
         end = text.find(b"<AppendedData")
         head = text[:end] if end >= 0 else text[:]
@@ -205,43 +167,27 @@ def _zip(file: BinaryIO) -> str:
 def _vtkhdf(file: BinaryIO) -> str:
     if lacks := _netcdf(file):
         return lacks
-    with _mapped(file) as data:
+    with file_parts.mapped(file) as data:
         return "" if data.find(b"VTKHDF") >= 0 else "it has no group VTKHDF, which VTK reads"
 
 
-#: Kinds of chunks of 3DS that hold others, and the one that holds them after its name.
-_HOLDERS, _NAMED = (0x4D4D, 0x3D3D, 0x4100), 0x4000
-#: Those of points and of triangles, which have numbers of points, and the bytes of a row.
-_POINTS, _TRIANGLES = 0x4110, 0x4120
-_ROW = {_POINTS: 12, _TRIANGLES: 8}
+#: Largest HDF5 file that is searched for heaps, which takes 0.1 s.
+_SEARCHED = 1 << 28
 
 
-def _3ds(file: BinaryIO) -> str:
-    """Follow the chunks, each of which states its size, and compare points with triangles."""
-    data, points = file.read(), 0
-    ends, place = [len(data)], 0
-    while ends:
-        if place + 6 > ends[-1]:
-            place = ends.pop()
-            continue
-        kind, size = struct.unpack_from("<HI", data, place)
-        end, inner = place + size, place + 6
-        if not 6 <= size <= ends[-1] - place:
-            return f"a part of {size} bytes is not within {ends[-1] - place}"
-        if kind in _ROW:
-            (count,) = struct.unpack_from("<H", data, inner)
-            if _ROW[kind] * count > end - inner - 2:
-                return f"{count} rows are not within {end - inner - 2} bytes"
-            points = count if kind == _POINTS else points
-            if kind == _TRIANGLES:
-                corners = np.frombuffer(data, "<u2", 4 * count, inner + 2).reshape(-1, 4)[:, :3]
-                if corners.max(initial=0) >= max(points, 1):
-                    return f"a triangle has the point {corners.max()} of {points}"
-        if kind in _HOLDERS or kind == _NAMED:
-            ends.append(end)
-            place = data.index(b"\0", inner) + 1 if kind == _NAMED else inner
-        else:
-            place = end
+def _heaps(file: BinaryIO) -> str:
+    """Follow the texts and lists of HDF5, among which its library goes around a free space of 0."""
+    if file.seek(0, 2) > _SEARCHED:
+        return ""
+    with file_parts.mapped(file) as data:
+        for place in file_parts.places(data, b"GCOL\1\0\0\0"):
+            (size,) = struct.unpack_from("<8xQ", data, place)
+            at, end = place + 16, min(place + size, len(data))
+            while at + 16 <= end:
+                number, size = struct.unpack_from("<H6xQ", data, at)
+                if not number and not size:
+                    return "a heap of HDF5 has a free space of 0 bytes"
+                at += 16 + (size + 7) // 8 * 8 if number else size
     return ""
 
 
@@ -251,7 +197,11 @@ def _netcdf(file: BinaryIO) -> str:
     if head.startswith(_HDF):
         # A cut within the header leaves no bytes of this number, which then is 0.
         end = int.from_bytes(head[_HDF_END[head[8]] :][:8], "little")
-        return _size(file, end) if end else "its header is not whole"
+        return (
+            (file_parts.missing_bytes(file, end) or _heaps(file))
+            if end
+            else "its header is not whole"
+        )
     # SciPy does not map this version: nothing can be told.
     if head.startswith(_LARGE):
         return ""
@@ -287,7 +237,9 @@ def _exodus(file: BinaryIO) -> str:
     """Read a file of HDF5 in another process: one that is damaged ends it, or spoils later ones."""
     lacking, size = _netcdf(file), file.seek(0, 2)
     file.seek(0)
-    if lacking or file.read(len(_HDF)) != _HDF or not sys.executable:
+    # The command line is another process.
+    alone = _supervise.has_parent() or not sys.executable
+    if lacking or alone or file.read(len(_HDF)) != _HDF:
         return lacking
     try:
         run = subprocess.run(
@@ -312,87 +264,10 @@ def _stl(file: BinaryIO) -> str:
         return ""  # VTK's reader says so
     # Binary files may begin with this word, too, but a text has no bytes of 0.
     if head.lstrip()[:5].lower() == b"solid" and b"\0" not in head:
-        return "" if b"endsolid" in _last(file).lower() else "its end is missing"
-    return _size(file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0])
-
-
-def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
-    """Return the numbers that a legacy file of text lacks for its mesh; VTK makes them up.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh as its reader returned it.
-    path : pathlib.Path
-        Its file; one of another format lacks nothing.
-    """
-    if path.suffix.lower() != ".vtk":
-        return ""
-    with path.open("rb") as file:
-        # An empty line ends what VTK says of an array.
-        block = _last(file).replace(b"\r", b"").rpartition(b"METADATA")
-        if block[1] and b"\n\n" not in block[2]:
-            return "its last block is not whole"
-        file.seek(0)
-        # The third line says whether numbers are text; binary files are not looked at.
-        if b"ASCII" not in [next(file, b"") for _ in range(3)][2].upper():
-            return ""
-        warn_of_last_line(path, block[2])
-        # Lines of keywords begin with a letter, as does "nan", which is a number.
-        count = sum(
-            len(words)
-            for words in map(bytes.split, file)
-            if words
-            and (not words[0][:1].isalpha() or words[0].lower().startswith((b"nan", b"inf")))
-        )
-    arrays = [
-        np.asarray(values)
-        for data in (mesh.point_data, mesh.cell_data, mesh.field_data)
-        for name, values in data.items()
-        if name not in (series.TIME, series.STEPS)
-    ]
-    # A symmetric tensor has six numbers in the file, or nine.
-    expected = sum(
-        array.size * 6 // 9 if array.shape[1:] == (9,) else array.size
-        for array in arrays
-        if array.dtype.kind in "biuf"
+        return "" if b"endsolid" in file_parts.last(file).lower() else "its end is missing"
+    return file_parts.missing_bytes(
+        file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0]
     )
-    if isinstance(mesh, pv.RectilinearGrid):
-        expected += sum(mesh.dimensions)
-    elif isinstance(mesh, pv.PointSet | pv.PolyData | pv.UnstructuredGrid | pv.StructuredGrid):
-        expected += 3 * mesh.n_points
-    if not isinstance(mesh, pv.PolyData) or mesh.n_verts != mesh.n_cells:
-        # PyVista makes a vertex of each point that is in no cell; a cell begins with its size.
-        sizes = [
-            len(connectivity(cells)[0]) + cells.GetNumberOfCells() for cells in cell_arrays(mesh)
-        ]
-        # An unstructured grid has a type for each cell, too.
-        expected += sum(sizes) + (mesh.n_cells if isinstance(mesh, pv.UnstructuredGrid) else 0)
-    return f"{count} of {expected} numbers are there" if count < expected else ""
-
-
-@contextlib.contextmanager
-def _mapped(file: BinaryIO) -> Iterator[mmap.mmap | bytes]:
-    """Return the content of a file, which is not read at once."""
-    if not file.seek(0, 2):
-        yield b""
-        return
-    with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as text:
-        yield text
-
-
-def _places(text: mmap.mmap | bytes, word: bytes) -> Iterator[int]:
-    """Return the places of a word."""
-    at = text.find(word)
-    while at >= 0:
-        yield at
-        at = text.find(word, at + 1)
-
-
-def _size(file: BinaryIO, least: int) -> str:
-    """Compare the size of a file with the least that it states."""
-    count = file.seek(0, 2)
-    return f"{count} of {least} bytes are there" if count < least else ""
 
 
 def _png(file: BinaryIO) -> str:
@@ -418,7 +293,7 @@ def _bmp(file: BinaryIO) -> str:
     if width < 1:
         return f"it is {width} pixels wide"
     # Rows are filled up to 4 bytes.
-    return _size(file, start + (width * bits + 31) // 32 * 4 * abs(height))
+    return file_parts.missing_bytes(file, start + (width * bits + 31) // 32 * 4 * abs(height))
 
 
 def _pnm(file: BinaryIO) -> str:
@@ -429,7 +304,7 @@ def _pnm(file: BinaryIO) -> str:
     if not match:
         return "its width and height are missing"
     # A bit is the least for each pixel.
-    return _size(file, int(match[1]) * int(match[2]) // 8)
+    return file_parts.missing_bytes(file, int(match[1]) * int(match[2]) // 8)
 
 
 def _fields(lines: Sequence[bytes], between: str) -> dict[str, str]:
@@ -489,19 +364,19 @@ def _data(file: BinaryIO, sizes: Sequence[int], kind: str, other: str, is_raw: b
     """Compare the sizes of an image with those of its data, in this file or another beside it."""
     if min(sizes) < 1:
         return f"its sizes are {sizes}"
-    width = next((count for word, count in _BYTES.items() if word in kind.lower()), 1)
+    width = next((count for word, count in file_parts.BYTES.items() if word in kind.lower()), 1)
     least = math.prod(sizes) * width
     if not is_raw:
         # A zip makes data at most 1032 times smaller.
         least //= 1032
     # A name may be a pattern of several, or a list of them.
     if not other or "%" in other or other.startswith("LIST"):
-        return _size(file, 0 if other else least)
+        return file_parts.missing_bytes(file, 0 if other else least)
     path = Path(file.name).parent / other
     if not path.is_file():
         return f"its data in '{other}' are missing"
     with path.open("rb") as data:
-        return _size(data, least)
+        return file_parts.missing_bytes(data, least)
 
 
 #: Corners of a cell of Tecplot by its name.
@@ -551,65 +426,6 @@ def _mdpa(file: BinaryIO) -> str:
     return wrong if blocks else ""
 
 
-#: Words of an EnSight case that stand alone in a line.
-_SECTIONS = (
-    b"FORMAT", b"GEOMETRY", b"VARIABLE", b"TIME", b"FILE", b"MATERIAL", b"BLOCK_CONTINUATION",
-    b"SCRIPTS",
-)  # fmt: skip
-
-
-#: Formats of EnSight, and kinds of its variables.
-_TYPES = [[b"ensight"], [b"ensight", b"gold"]]
-_KIND = re.compile(
-    rb"(?i)\s*(constant\s+per\s+case(\s+file)?"
-    rb"|(complex\s+)?(scalar|vector|tensor(\s+a?symm?)?)\s+per\s+(measured\s+)?(node|element))\s*"
-)
-
-
-def _ensight(file: BinaryIO) -> str:
-    """Check the lines of a case, and the files that it names for their parts."""
-    folder, section, sections = Path(file.name).parent, b"", set[bytes]()
-    parts: set[bytes] | None = None
-    for line in file.read().splitlines():
-        head, colon, rest = line.partition(b"#")[0].partition(b":")
-        words = [word for word in rest.split() if not word.isdigit()]
-        if head.strip().upper() in _SECTIONS and not colon:
-            section = head.strip().upper()
-            if section in sections:
-                return f"the section {section.decode()} stands twice"
-            sections.add(section)
-        elif not colon and not re.fullmatch(rb"[\s\d.eE+-]*", head):
-            return f"no such section as {line[:40]!r}"
-        elif section == b"VARIABLE" and colon and not _KIND.fullmatch(head):
-            return f"no such variable as {line[:40]!r}"
-        elif (
-            section == b"FORMAT" and head.strip() == b"type" and rest.lower().split() not in _TYPES
-        ):
-            return f"no such type as {rest[:40]!r}"
-        elif colon and not words and section in (b"GEOMETRY", b"VARIABLE"):
-            return f"it names no file in the line {line[:40]!r}"
-        elif section in (b"GEOMETRY", b"VARIABLE") and words:
-            # Stars stand for the digits of a step; numbers without a file, and pairs of files.
-            if b"*" in rest or b'"' in rest or re.match(rb"\s*(constant|complex)", head):
-                continue
-            name = os.fsdecode(words[0 if section == b"GEOMETRY" else -1])
-            if not (folder / name).is_file():
-                return f"it names {name!r}, which is missing"
-            numbers = _parts(folder / name)
-            parts = numbers if section == b"GEOMETRY" else parts
-            if numbers is not None and parts is not None and (other := numbers - parts):
-                return f"{name!r} has the part {min(other)!r}, which the geometry has not"
-    return ""
-
-
-def _parts(path: Path) -> set[bytes] | None:
-    """Return the numbers of the parts in a file of text of EnSight, None of another one."""
-    data = path.read_bytes()
-    if b"Binary" in data[:80]:
-        return None
-    return {word.strip() for word in re.findall(rb"(?m)^part[ \t]*\r?$\s?([^\n]*)", data)}
-
-
 def _gifti(file: BinaryIO) -> str:
     """Check the numbers of axes, to which nibabel counts."""
     data = file.read()
@@ -642,92 +458,6 @@ def _foam(file: BinaryIO) -> str:
     return "the text of its boundary has bytes of 0" if b"\0" in text else ""
 
 
-#: Numbers in an element of glTF, and bytes of a number.
-_ELEMENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
-_COMPONENTS = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
-
-
-def _gltf(file: BinaryIO) -> str:
-    """Compare the parts of glTF with those that they name."""
-    head, text = file.read(20), b""
-    if head.startswith(b"glTF"):
-        whole, length = struct.unpack("<8xII4x", head)
-        if lacks := _size(file, whole):
-            return lacks
-        file.seek(20)
-        text = file.read(length)
-    else:
-        text = head + file.read()
-    scene = json.loads(text, parse_float=_finite, parse_constant=_finite)
-    lists = {key: part for key, part in scene.items() if isinstance(part, list)}
-    nodes = lists.get("nodes", [])
-    for key, name in (("mesh", "meshes"), ("children", "nodes"), ("skin", "skins")):
-        for node in nodes:
-            _parts_of(lists, name, node.get(key, []))
-    graphlib.TopologicalSorter({i: n.get("children", ()) for i, n in enumerate(nodes)}).prepare()
-    for part in lists.get("scenes", []):
-        _parts_of(lists, "nodes", part.get("nodes", []))
-    _parts_of(lists, "scenes", scene.get("scene", []))
-    for mesh in lists.get("meshes", []):
-        for shape in mesh["primitives"]:
-            _parts_of(lists, "accessors", [*shape["attributes"].values()])
-            _parts_of(lists, "accessors", shape.get("indices", []))
-    return _buffers(Path(file.name).parent, lists)
-
-
-def _buffers(folder: Path, lists: dict[str, list[Keywords]]) -> str:
-    """Compare the sizes of the arrays of glTF with those of the buffers in which they are."""
-    for buffer in lists.get("buffers", []):
-        uri = buffer.get("uri", "")
-        path = folder / unquote(uri)
-        if uri.startswith("data:"):
-            there = len(uri.partition(",")[2]) * 3 // 4
-        elif uri and not path.is_file():
-            return f"it names {uri!r}, which is missing"
-        else:
-            there = path.stat().st_size if uri else _whole(buffer, "byteLength")
-        if there < _whole(buffer, "byteLength"):
-            return f"{there} of {buffer['byteLength']} bytes of a buffer are there"
-    for view in lists.get("bufferViews", []):
-        (buffer,) = _parts_of(lists, "buffers", view["buffer"])
-        end = _whole(view, "byteOffset", 0) + _whole(view, "byteLength")
-        if end > buffer["byteLength"]:
-            return f"a view ends at {end} of {buffer['byteLength']} bytes of its buffer"
-    for array in lists.get("accessors", []):
-        step = _ELEMENTS[array["type"]] * _COMPONENTS[array["componentType"]]
-        for view in _parts_of(lists, "bufferViews", array.get("bufferView", [])):
-            end = _whole(array, "byteOffset", 0) + step
-            end += (_whole(array, "count") - 1) * (_whole(view, "byteStride", 0) or step)
-            if end > view["byteLength"]:
-                return f"an array ends at {end} of {view['byteLength']} bytes of its view"
-    return ""
-
-
-def _finite(word: str) -> float:
-    """Return a number of glTF, of which VTK ends the process where it is too large."""
-    if not math.isfinite(number := float(word)):
-        raise ValueError(f"it has the number {word}")
-    return number
-
-
-def _whole(part: Keywords, key: str, default: int | None = None) -> int:
-    """Return a number of glTF that is 0 or more."""
-    number = part.get(key, default)
-    if type(number) is not int or number < 0:
-        raise ValueError(f"its {key} is {number!r}")
-    return number
-
-
-def _parts_of(lists: dict[str, list[Keywords]], name: str, numbers: object) -> list[Keywords]:
-    """Return the parts of a list of glTF by their number, or their numbers."""
-    every = lists.get(name, [])
-    chosen: list[Foreign] = numbers if isinstance(numbers, list) else [numbers]
-    for number in chosen:
-        if type(number) is not int or not 0 <= number < len(every):
-            raise ValueError(f"number {number!r} of {len(every)} {name}")
-    return [every[number] for number in chosen]
-
-
 def _obj(file: BinaryIO) -> str:
     """Compare the numbers in the corners of faces with the counts of points and of the others."""
     text = file.read()
@@ -747,164 +477,6 @@ def _obj(file: BinaryIO) -> str:
     return ""
 
 
-def _legacy(file: BinaryIO) -> str:
-    """Count the corners of cells and the arrays of fields, or VTK's reader ends the process."""
-    lines = file.read(_HEAD).splitlines()
-    is_text = b"ASCII" in b"".join(lines[2:3]).upper()
-    version = _VERSION.match(b"".join(lines[:1]))
-    # Since version 5 cells are arrays of ends and of corners.
-    keywords = _CELLS if version is None or int(version[1]) < 5 else ()
-    with _mapped(file) as data:
-        fields = (_field(data, at, is_text) for at in _places(data, b"\nFIELD "))
-        cells = (
-            _cells(data, at, is_text) for word in keywords for at in _places(data, b"\n" + word)
-        )
-        types = (_types(data, at, is_text) for at in _places(data, b"\nCELL_TYPES "))
-        named = (
-            _named(data, at)
-            for word in (b"\nPOINT_DATA ", b"\nCELL_DATA ")
-            for at in _places(data, word)
-        )
-        return next(filter(None, itertools.chain(fields, cells, types, named)), "")
-
-
-_VERSION = re.compile(rb"# vtk DataFile Version\s+(\d+)\.\d")
-_CELLS = (b"VERTICES ", b"LINES ", b"POLYGONS ", b"TRIANGLE_STRIPS ", b"CELLS ")
-_COUNTS = re.compile(rb"\s\w+[ \t]+(-?\d+)[ \t]+(-?\d+)[ \t]*\r?\n")
-#: The first word after numbers.
-_LETTER = re.compile(rb"[a-zA-Z]")
-
-
-#: What begins with an array of points or cells in a legacy file, or stands in its place.
-_ATTRIBUTES = (
-    b"SCALARS", b"VECTORS", b"NORMALS", b"TENSORS", b"TENSORS6", b"TEXTURE_COORDINATES",
-    b"COLOR_SCALARS", b"LOOKUP_TABLE", b"FIELD", b"GLOBAL_IDS", b"PEDIGREE_IDS", b"EDGE_FLAGS",
-    b"METADATA", b"POINT_DATA", b"CELL_DATA",
-)  # fmt: skip
-
-
-def _named(data: mmap.mmap | bytes, at: int) -> str:
-    """Return the reason why no array begins where it should."""
-    word = re.compile(rb"\n\w+[ \t]+\d+\s+(\S+)").match(data, at)
-    if word is None or word[1].upper() in _ATTRIBUTES:
-        return ""
-    return f"{word[1][:20]!r} stands where an array begins"
-
-
-def _types(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
-    """Return the reason why types of cells are none that VTK has."""
-    counts = re.compile(rb"\n\w+[ \t]+(\d+)[ \t]*\r?\n").match(data, at)
-    if counts is None:
-        return ""
-    count, start = int(counts[1]), counts.end()
-    if is_text:
-        end = _LETTER.search(data, start)
-        numbers = np.fromstring(data[start : end.start() if end else None], np.int64, sep=" ")
-    else:
-        there = min(count, (len(data) - start) // 4)
-        numbers = np.frombuffer(data, ">i4", there, start)
-    unknown = [kind for kind in np.unique(numbers) if points_of_type(int(kind)) is None]
-    if unknown:
-        return f"VTK has no cells of type {unknown[0]}"
-    return _polyhedra(data, at, is_text, np.flatnonzero(numbers == VTK_POLYHEDRON))
-
-
-_ENDS = re.compile(rb"\nCELLS[ \t]+\d+[ \t]+\d+\s+OFFSETS[ \t]+\w*?(32|64)[ \t]*\r?\n")
-_IDS = re.compile(rb"\nCONNECTIVITY[ \t]+\w+[ \t]*\r?\n")
-
-
-def _polyhedra(data: mmap.mmap | bytes, at: int, is_text: bool, cells: Indices) -> str:
-    """Return the reason why cells are not their faces, each with its number of corners before it.
-
-    Since version 5 cells are arrays of ends and of corners, which are before their types.
-    """
-    if not len(cells):
-        return ""
-    first = _ENDS.search(data, max(data.rfind(b"\nCELLS ", 0, at), 0))
-    middle = _IDS.search(data, first.end()) if first else None
-    if first is None or middle is None:
-        return ""
-    parts, size = (data[first.end() : middle.start()], data[middle.end() : at]), int(first[1]) // 8
-    if is_text:
-        ends, corners = (np.fromstring(part, np.int64, sep=" ") for part in parts)
-    else:
-        ends, corners = (np.frombuffer(part, f">i{size}", len(part) // size) for part in parts)
-    for cell in cells:
-        faces = corners[ends[cell] : ends[cell + 1]].tolist()
-        place, count = 1, len(faces)
-        for _ in range(min(faces[0], count) if faces else 0):
-            place += faces[place] + 1 if place < count and faces[place] >= 0 else count
-        if place != count:
-            return f"cell {cell} is no polyhedron of whole faces"
-    return ""
-
-
-def _cells(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
-    """Return the reason why cells are not whole, of which each begins with its number of corners.
-
-    VTK takes that number as it is.
-    """
-    counts = _COUNTS.match(data, at)
-    if counts is None:
-        return ""  # VTK's reader says so, or it is the name of an array
-    count, size, start = int(counts[1]), int(counts[2]), counts.end()
-    if is_text:
-        end = _LETTER.search(data, start)
-        numbers = np.fromstring(data[start : end.start() if end else None], np.int64, sep=" ")
-    else:
-        there = max(min(size, (len(data) - start) // 4), 0)
-        numbers = np.frombuffer(data, ">i4", there, start)
-    if len(numbers) < size:
-        return f"{len(numbers)} of {size} numbers of cells are there"
-    step = int(numbers[0]) + 1 if count > 0 < size else 1
-    # Most meshes have cells of one kind.
-    if size == count * step and np.all(numbers[:size:step] == step - 1):
-        return ""
-    corners, place = numbers.tolist(), 0
-    for _ in range(count):
-        place += corners[place] + 1 if place < size and corners[place] >= 0 else size
-    return "" if place == size else f"the corners of {count} cells are not {size} numbers"
-
-
-def _field(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
-    """Return the reason why a field that begins at a place is not whole."""
-    head = re.compile(rb"\sFIELD[ \t]+\S+\s+(\d+)(?=\s)").match(data, at)
-    if head is None:
-        return "a field has no number of arrays"
-    at = head.end()
-    for _ in range(int(head[1])):
-        array = _ARRAY.match(data, at)
-        if array is None:
-            return "an array of a field is missing"
-        count, kind, at = int(array[1]) * int(array[2]), array[3].decode().lower(), array.end()
-        if "string" in kind or kind in ("bit", "long", "unsigned_long", "variant"):
-            return ""
-        if not any(part in kind for part in _BYTES):
-            return f"an array of a field has the type {kind!r}"
-        if is_text:
-            word = _WORD.search(data, at)
-            end = len(data) if word is None else word.start()
-            there = len(data[at:end].split())
-            if _ODD.search(data, at, end):
-                return "words stand among the numbers of a field"
-        else:
-            width = next((count for part, count in _BYTES.items() if part in kind), 1)
-            there, end = (len(data) - at) // width, at + count * width
-        if there < count:
-            return f"{there} of {count} numbers of an array of a field are there"
-        at = end
-    return ""
-
-
-#: Header of an array of a field in a legacy file, with what VTK knows of the array before it.
-_ARRAY = re.compile(
-    rb"(?:\s*METADATA\b.*?\n\r?\n)?\s*\S+\s+(\d+)\s+(\d+)\s+(\w+)[^\n]*\n", re.DOTALL
-)
-#: What is no part of a number in text, such as -inf, and a line that does not begin with one.
-_ODD = re.compile(rb"(?i)[^\s\d.+einfaty-]|[ \t](?!nan|inf)[a-z_]")
-_WORD = re.compile(rb"(?mi)^[ \t]*(?!nan|inf)[a-z_%]")
-
-
 #: Bytes of the section at the begin of a message of GRIB with its length, by its edition.
 _GRIB_HEAD = {1: 8, 2: 16}
 #: Bytes by which the length of a large message of edition 1 may be rounded, in which it is counted.
@@ -914,7 +486,7 @@ _GRIB_UNIT = 120
 def _grib(file: BinaryIO) -> str:
     """Follow the messages, each of which states its length and ends in four digits."""
     at, count = 0, 0
-    with _mapped(file) as data:
+    with file_parts.mapped(file) as data:
         while (start := data.find(b"GRIB", at)) >= 0:
             edition = data[start + 7] if start + 7 < len(data) else 0
             head = data[start : start + _GRIB_HEAD.get(edition, 0)]
@@ -934,11 +506,11 @@ def _grib(file: BinaryIO) -> str:
 
 #: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
-    ".case": _ensight, ".vtk": _legacy, ".mdpa": _mdpa, ".obj": _obj, ".png": _png,
-    ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp, ".3ds": _3ds, ".trx": _zip,
+    ".case": ensight.missing_part, ".vtk": legacy_vtk.missing_part, ".mdpa": _mdpa, ".obj": _obj,
+    ".png": _png, ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp, ".trx": _zip,
     ".vtm": _blocks, **dict.fromkeys((".gz", ".mgz"), _gzip),
     **dict.fromkeys((".hdf", ".vtkhdf"), _vtkhdf),
-    **dict.fromkeys((".glb", ".gltf"), _gltf),
+    **dict.fromkeys((".glb", ".gltf"), gltf.missing_part),
     **dict.fromkeys((".avs", ".inp"), _avs),
     **dict.fromkeys((".grib", ".grib2", ".grb", ".grb2"), _grib),
     **dict.fromkeys((".nrrd", ".nhdr"), _nrrd),

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.mesh import short_files
+from vizlight.mesh import file_parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -61,7 +61,7 @@ def read(path: Path) -> pv.MultiBlock:
     """
     zones, marker = [_Zone()], ""
     data = path.read_bytes()
-    short_files.warn_of_last_line(path, data)
+    file_parts.warn_of_last_line(path, data)
     lines = iter([line for text in data.splitlines() if (line := text.partition(b"%")[0].strip())])
     for line in lines:
         word, sign, value = (part.strip() for part in line.partition(b"="))

@@ -21,6 +21,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vizlight import _check, files
 from vizlight.mesh.joining import without_ghosts
 from vizlight.pieces.ghosts import GHOST, own_cells, with_layer
+from vizlight.vtk import messages
 from vizlight.vtk.hull import cropped
 
 if TYPE_CHECKING:
@@ -460,7 +461,7 @@ def _informed(path: Path) -> Foreign:
     else:
         reader = STRUCTURED[path.suffix.lower()]()
     reader.SetFileName(str(path))
-    with files.captured_errors() as errors:
+    with messages.captured_errors() as errors:
         reader.UpdateInformation()
     if errors:
         got = f"'{path}' ({errors[0]})"

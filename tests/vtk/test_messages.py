@@ -1,0 +1,29 @@
+"""Messages of VTK are told apart by thread."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from vtkmodules.vtkCommonCore import vtkOutputWindow
+
+from vizlight import files
+from vizlight.vtk import messages
+
+
+def test_what_vtk_says_is_told_apart_by_thread(tmp_path, capfd):
+    bad = tmp_path / "bad.vtp"
+    bad.write_text("no mesh")
+    window = vtkOutputWindow.GetInstance()
+
+    def say():
+        vtkOutputWindow.GetInstance().DisplayErrorText("said elsewhere\n")
+
+    with messages.captured_errors() as errors, ThreadPoolExecutor(1) as pool:
+        with messages.captured_errors() as inner:
+            vtkOutputWindow.GetInstance().DisplayErrorText("said within\n")
+        pool.submit(say).result()
+        with pytest.raises(files.FileError, match="Error parsing XML"):
+            pool.submit(files.read, bad).result()
+        vtkOutputWindow.GetInstance().DisplayWarningText("said here\n")
+    assert (errors, inner) == (["said here"], ["said within"])
+    assert capfd.readouterr().err == "said elsewhere\n"
+    assert vtkOutputWindow.GetInstance() is window

@@ -1,0 +1,65 @@
+"""Parts of files that are open: places of words, numbers of bytes, what stands at the end."""
+
+from __future__ import annotations
+
+import contextlib
+import mmap
+from typing import TYPE_CHECKING, BinaryIO
+
+from vizlight import _check
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+#: Bytes of a number by a part of the name of its type: the first that is in it.
+BYTES = {
+    "64": 8, "32": 4, "16": 2, "int8": 1, "idtype": 4, "char": 1, "short": 2, "long_long": 8,
+    "long long": 8, "longlong": 8, "long": 4, "int": 4, "float": 4, "double": 8,
+}  # fmt: skip
+#: Bytes at the end of a file in which its last words stand.
+_END = 512
+
+
+def warn_of_last_line(path: Path, data: bytes) -> None:
+    """Warn of a text without a line break at its end, which may be cut in its last number.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    data : bytes
+        Its content.
+    """
+    if not data.endswith((b"\n", b"\r")):
+        _check.warn(f"file: '{path}' may be cut in its last line, which has no line break")
+
+
+def last(file: BinaryIO) -> bytes:
+    """Return the last bytes of a file."""
+    file.seek(-min(_END, file.seek(0, 2)), 2)
+    return file.read()
+
+
+@contextlib.contextmanager
+def mapped(file: BinaryIO) -> Iterator[mmap.mmap | bytes]:
+    """Return the content of a file, which is not read at once."""
+    if not file.seek(0, 2):
+        yield b""
+        return
+    with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as text:
+        yield text
+
+
+def places(text: mmap.mmap | bytes, word: bytes) -> Iterator[int]:
+    """Return the places of a word."""
+    at = text.find(word)
+    while at >= 0:
+        yield at
+        at = text.find(word, at + 1)
+
+
+def missing_bytes(file: BinaryIO, least: int) -> str:
+    """Return how many bytes a file has of the least that it states, or "" if all."""
+    count = file.seek(0, 2)
+    return f"{count} of {least} bytes are there" if count < least else ""

@@ -1,0 +1,97 @@
+"""Messages of VTK in a block of code, each as one line."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import sys
+import threading
+from typing import TYPE_CHECKING
+
+from vtkmodules.util.misc import calldata_type
+from vtkmodules.util.vtkConstants import VTK_STRING
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from vizlight._types import Foreign
+
+__all__ = ["captured_errors", "first_line"]
+
+#: Where VTK says that an error or a warning arose, which stands before what it says.
+_ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
+#: Where an object of VTK is in memory, and what it was asked for.
+_ADDRESS = re.compile(r" \(0x[0-9a-f]+\)| for request: vtkInformation.*| when asked by REQUEST.*")
+
+
+def first_line(error: Exception | str) -> str:
+    """Return the first line with words of a message.
+
+    Parameters
+    ----------
+    error : Exception or str
+    """
+    return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
+
+
+class _Messages:
+    """Messages of VTK while files are read and written, by thread.
+
+    VTK has one window for the messages of a process. It is replaced while any thread listens;
+    messages of other threads go on to the earlier window. No stream is redirected.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._heard: dict[int, list[list[str]]] = {}
+        self._replaced: tuple[vtkOutputWindow, vtkLogger.Verbosity] | None = None
+
+    @contextlib.contextmanager
+    def collected(self) -> Iterator[list[str]]:
+        """Collect the errors and warnings of VTK that arise in this thread, each as one line."""
+        thread = threading.get_ident()
+        errors: list[str] = []
+        with self._lock:
+            # The first that listens puts its window in place of the user's, and the last one puts
+            # that back.
+            if self._replaced is None:
+                self._replaced = (
+                    vtkOutputWindow.GetInstance(),
+                    vtkLogger.GetCurrentVerbosityCutoff(),
+                )
+                listening = vtkStringOutputWindow()
+                heard: Foreign = self._note
+                for event in ("ErrorEvent", "WarningEvent"):
+                    listening.AddObserver(event, heard)  # type: ignore[arg-type]
+                vtkOutputWindow.SetInstance(listening)
+                # VTK's logger would print each message to standard error beside that.
+                vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+            # One thread may listen in several contexts: the innermost hears.
+            self._heard.setdefault(thread, []).append(errors)
+        try:
+            yield errors
+        finally:
+            with self._lock:
+                open_lists = self._heard[thread]
+                open_lists.pop()
+                if not open_lists:
+                    del self._heard[thread]
+                if not self._heard and self._replaced is not None:
+                    window, verbosity = self._replaced
+                    self._replaced = None
+                    vtkOutputWindow.SetInstance(window)
+                    vtkLogger.SetStderrVerbosity(verbosity)
+
+    @calldata_type(VTK_STRING)  # type: ignore[no-untyped-call, untyped-decorator]
+    def _note(self, _window: object, event: str, text: str | None) -> None:
+        text = text or "words that are no text"
+        open_lists, replaced = self._heard.get(threading.get_ident()), self._replaced
+        if open_lists:
+            open_lists[-1].append(first_line(_ADDRESS.sub("", _ORIGIN.sub("", text))))
+        elif replaced is not None:
+            sys.stderr.write(text)
+            replaced[0].InvokeEvent(event, text)
+
+
+captured_errors = _Messages().collected
