@@ -5,6 +5,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
+from vizlight.draw.margins import parted
 from vizlight.looks.recipes import volumes
 from vizlight.mesh import meaning
 
@@ -32,7 +33,12 @@ def test_the_title_of_an_isosurface_has_the_words_and_the_unit_of_its_file():
     words = {"long_name": "air_temperature", "units": "K"}
     meaning.attach(grid, meaning.Meaning(arrays={"T": words}))
     (key,) = vizlight.look(grid, "shape", contour="T", level=0.5).drawing.keys
-    assert key["title"] == "Air temperature = 0.5 K"
+    assert parted(key["title"]) == ("Air temperature = 0.5 K", "")
+    grid.field_data["TimeValue"] = [0.0]
+    when = meaning.Meaning(arrays={"T": words}, time="days since 2001-02-03")
+    meaning.attach(grid, when)
+    (key,) = vizlight.look(grid, "shape", contour="T", level=0.5).drawing.keys
+    assert parted(key["title"]) == ("Air temperature = 0.5 K, 2001-02-03", "")
 
 
 def test_slices_are_named_so(monkeypatch):
