@@ -140,6 +140,14 @@ def black():
     return np.zeros((20, 20, 3), np.uint8)
 
 
+def chain():
+    """Return a molecule of eight residues."""
+    mesh = pv.PolyData(np.outer(np.arange(8), (3.8, 0, 0)))
+    mesh["atom_type"], mesh["chain"] = np.full(8, 6), np.zeros(8, int)
+    mesh["backbone_mask"] = np.ones(8, np.uint8)
+    return mesh
+
+
 def europe():
     """Return a map in degrees."""
     return pv.ImageData(dimensions=(6, 5, 1), spacing=(10, 8, 1), origin=(-10, 30, 0))
@@ -242,7 +250,7 @@ OWN = {
     "smooth_maps.smoothed": {"mesh": hills, "name": "h", "factor": 2},
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "creases.creases": {"surface": ball},
-    "molecules.backbone": {"atoms": ball},
+    "molecules.backbone": {"atoms": chain},
     "both_sides.both_sides": {"surface": ball, "names": ("a", "b")},
     "box_axes.box_axes": {"size": 10.0},
     "box_axes.captions": {"meshes": lambda: pv.MultiBlock({"a": ball()}), "size": 10.0},

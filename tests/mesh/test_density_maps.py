@@ -20,10 +20,10 @@ def density_map(path, values, *angles, first=(0, 0, 0)):
     chart.write_ccp4_map(str(path))
 
 
-@pytest.mark.parametrize("suffix", [".mrc", ".map", ".ccp4"])
-def test_values_are_at_their_places(tmp_path, suffix):
+@pytest.mark.parametrize("name", ["a.mrc", "a.map", "a.ccp4"])
+def test_values_are_at_their_places(tmp_path, name):
     values = np.arange(24, dtype=np.float32).reshape(4, 3, 2)
-    path = tmp_path / f"a{suffix}"
+    path = tmp_path / name
     density_map(path, values, 90, 90, 90, first=(1, 0, -1))
     grid = vizlight.read(path)
     assert isinstance(grid, pv.ImageData)

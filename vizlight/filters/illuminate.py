@@ -194,8 +194,8 @@ def light_mesh(
 ) -> MeshT:
     """Light a mesh by options that are checked; see :func:`illuminate`.
 
-    ``vote`` is what the whole decides of its sides, where the mesh is a part of one, and ``known``
-    are the normals of a dataset that were computed already.
+    ``vote`` is the decision of the whole about its sides, where the mesh is a part of one, and
+    ``known`` are the normals of a dataset that were computed already.
     """
     scene = as_scene(scene)
     inplace = _check.boolean("inplace", inplace)

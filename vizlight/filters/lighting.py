@@ -44,8 +44,8 @@ def part_of(
 ) -> Part:
     """Return what one mesh is lit by; see :func:`vizlight.vtk.parts.part_of`.
 
-    ``known`` are normals of its surface that were computed already, and ``vote`` is what a whole
-    decides of its sides.
+    ``known`` are normals of its surface that were computed already, and ``vote`` is the decision of
+    a whole about its sides.
     """
     part = vtk_parts.part_of(
         mesh,

@@ -208,7 +208,7 @@ def read(
 
 
 def _engine(path: Path) -> Foreign:
-    """Return what xarray opens a file with: NetCDF4 as a class, since a name loads all engines."""
+    """Return the engine of xarray for a file: NetCDF4 as a class, since a name loads all."""
     from xarray.backends import NetCDF4BackendEntrypoint as NetCDF4
 
     if path.suffix.lower() in ZARR:

@@ -87,7 +87,7 @@ def missing_part(file: BinaryIO) -> str:
 
 
 class _Entry(NamedTuple):
-    """A line of a case: what is before and after its colon, and the kind of a variable."""
+    """A line of a case: the texts before and after its colon, and the kind of a variable."""
 
     head: bytes
     rest: bytes

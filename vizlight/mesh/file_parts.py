@@ -1,4 +1,4 @@
-"""Parts of files that are open: places of words, numbers of bytes, what stands at the end."""
+"""Parts of files that are open: places of words, numbers of bytes, the last words."""
 
 from __future__ import annotations
 

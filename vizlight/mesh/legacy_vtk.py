@@ -1,4 +1,4 @@
-"""Legacy files of VTK that are shorter than they state, or whose numbers contradict each other.
+"""Legacy files of VTK that are shorter than they state, or contradict themselves.
 
 VTK's reader makes numbers up that are missing, and ends the process at numbers of corners.
 """

@@ -32,7 +32,7 @@ _NUMBERS = {"residue": (22, 26, 0), "occupancy": (54, 60, 1.0), "b_factor": (60,
 BACKBONE, LONG = "backbone_mask", 60
 #: Largest distance in angstroms of two that follow each other, in proteins and in nucleic acids.
 _APART = {6: 4.5, 15: 9.0}
-#: Steps of curves through few and through many of them, in angstroms, and what is many.
+#: Steps of curves through few and through many of them, in angstroms, and how many are many.
 _FINE, _COARSE, MANY = 0.6, 1.9, 5000
 #: Share of an edge of a cell up to which places are one.
 ROUNDED = 1e-3
@@ -208,8 +208,8 @@ def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
     -------
     pyvista.PolyData
         Curves through the carbon of each amino acid, or the phosphorus of each nucleotide, with the
-        arrays of these atoms, interpolated. They end where the next is more than 4.5, or 9,
-        angstroms away.
+        arrays of these atoms, interpolated. They end where the next is farther than in a whole
+        chain.
 
     Raises
     ------

@@ -336,7 +336,7 @@ def moving(drawing: Drawing) -> Drawing | None:
 
 
 def with_words(drawing: Drawing, words: str) -> Drawing:
-    """Return a drawing whose first key says how strokes move, in place of their sense."""
+    """Return a drawing with a first key that says how strokes move, in place of their sense."""
     said = f"{_title_without_sense(drawing)}; {words}"
     keys = [dict(key, title=said) if i == 0 else key for i, key in enumerate(drawing.keys)]
     return replace(drawing, keys=keys)
