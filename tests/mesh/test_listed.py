@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import vizlight
-from vizlight.mesh import meaning
+from vizlight.mesh import listed, meaning
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
@@ -66,6 +66,42 @@ def test_points_where_no_cells_are_known():
     look = vizlight.look(mesh, size=(90, 60))
     assert look.shown == "points"
     assert "from above, north up" in look.reason
+
+
+def reduced_gaussian(rows=16):
+    """Return places on parallels with fewer points toward the poles."""
+    lat = 90 - (np.arange(rows) + 0.5) * 180 / rows
+    counts = np.maximum(8, np.rint(2 * rows * np.cos(np.radians(lat)))).astype(int)
+    lon = np.concatenate([np.arange(count) * 360 / count for count in counts])
+    return lon, np.repeat(lat, counts)
+
+
+def test_points_that_cover_the_earth_are_joined():
+    lon, lat = reduced_gaussian()
+    places = {"lon": ("values", lon, {"units": "degrees_east"}),
+              "lat": ("values", lat, {"units": "degrees_north"})}  # fmt: skip
+    values = np.sin(np.radians(lat))
+    mesh = vizlight.read(xr.Dataset({"t": ("values", values), **places}))
+    assert "triangles between the points, which cover the earth" in meaning.line(mesh)
+    # All of the map, once, with the values at their places; a pole has the mean of its ring.
+    assert mesh.compute_cell_sizes()["Area"].sum() == pytest.approx(360 * 180)
+    y = mesh.points[:, 1]
+    inner = np.abs(y) < 84
+    np.testing.assert_allclose(mesh["t"][inner], np.sin(np.radians(y[inner])), atol=0.01)
+    np.testing.assert_allclose(mesh["t"][np.abs(y) > 89.9], np.sign(y[np.abs(y) > 89.9]), atol=0.01)
+    assert (mesh.compute_normals()["Normals"][:, 2] > 0.99).all()
+    # On a ball nothing is open.
+    ball = vizlight.cartography.globe(mesh)
+    assert ball.clean(tolerance=1e-5).n_open_edges == 0
+
+
+def test_points_of_a_part_of_the_earth_are_not_joined():
+    lon, lat = reduced_gaussian()
+    assert listed.around_earth(lon, lat) is not None
+    ocean = (lon > 60) | (lat < -20)
+    assert listed.around_earth(lon[ocean], lat[ocean]) is None
+    assert listed.around_earth(lon[lat > -40], lat[lat > -40]) is None
+    assert listed.around_earth(np.zeros(200), np.linspace(-90, 90, 200)) is None
 
 
 def test_stations_of_several_times():

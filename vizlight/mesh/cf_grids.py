@@ -559,10 +559,20 @@ class _Reader:
         scale, unit = self._unit(of.x, of.y)
         x, y = (scale * np.asarray(self.file[name].values, np.float64) for name in (of.x, of.y))
         mesh, kept = listed.points(x, y, degrees=unit == georeference.DEGREE)
-        if isinstance(mesh, pv.PolyData):
-            self.said.notes.append(f"points, since no cells of {of.dim!r} are known")
+        is_earth = isinstance(mesh, pv.PolyData) and unit == georeference.DEGREE
+        around = listed.around_earth(x[kept], y[kept]) if is_earth else None
         words = f"x {of.x!r} and y {of.y!r} of each value"
-        rows_of: _RowsOf = {of.dim: (mesh.point_data, lambda rows: rows[kept])}
+        if around is not None:
+            faces = around.faces()
+            mesh = faces.mesh()
+            self.said.notes.append("triangles between the points, which cover the earth")
+            rows_of: _RowsOf = {
+                of.dim: (mesh.point_data, lambda rows: faces.at_points(around.rows(rows[kept])))
+            }
+        else:
+            if isinstance(mesh, pv.PolyData):
+                self.said.notes.append(f"points, since no cells of {of.dim!r} are known")
+            rows_of = {of.dim: (mesh.point_data, lambda rows: rows[kept])}
         return self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
 
     def _unit(self, x: str, y: str) -> tuple[float, str]:

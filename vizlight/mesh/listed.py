@@ -8,18 +8,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+import scipy
 
-from vizlight.mesh import unrolled
+from vizlight.mesh import globes, unrolled
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
 
     from vizlight._types import Array, Bools, Foreign, Indices, Raw
 
-__all__ = ["Listed", "cells", "joined", "listed", "points", "seem_radians", "with_turned_rows"]
+__all__ = [
+    "Around", "Listed", "around_earth", "cells", "joined", "listed", "points", "seem_radians",
+    "with_turned_rows",
+]  # fmt: skip
 
 #: Dimensions of cells of several faces, and of their corners.
 CELLS = ("cell", "corner")
+#: Least and largest number of points that are joined, degrees of latitude that they must span, and
+#: the largest radius of a hole between them, in distances of even points.
+FEWEST, MOST_JOINED, TALL, HOLE = 100, 1_000_000, 150.0, 4.0
 #: Decimals of corners that are one, in degrees or in metres.
 _SAME = 6
 
@@ -187,6 +194,73 @@ def points(
     if order is None:
         return pv.PolyData(np.column_stack([x, y, np.zeros(len(x))])), kept
     return pv.RectilinearGrid(x[order[0]], y[order[:, 0]], np.zeros(1)), kept[order.ravel()]
+
+
+@dataclass(frozen=True)
+class Around:
+    """Triangles between points that cover the earth.
+
+    Attributes
+    ----------
+    lon, lat : ndarray, shape (N,)
+        Places of the points, and of poles after them that lie in a ring of one parallel.
+    triangles : ndarray of int, shape (M, 3)
+        Points, counted around as seen from above.
+    rings : list of ndarray of int
+        Points around each of these poles.
+    """
+
+    lon: Array
+    lat: Array
+    triangles: Indices
+    rings: list[Indices]
+
+    def faces(self) -> unrolled.Faces:
+        """Return the triangles on a map."""
+        whole = np.ones(self.triangles.shape, np.bool_)
+        return unrolled.unrolled(self.lon, self.lat, self.triangles, whole)
+
+    def rows(self, values: Raw) -> Raw:
+        """Return the values of points and poles by those of the points."""
+        means = [values[ring].mean(axis=0, keepdims=True) for ring in self.rings]
+        return np.concatenate([values, *means]).astype(values.dtype)
+
+
+def around_earth(lon: Array, lat: Array) -> Around | None:
+    """Return Delaunay's triangles between points that cover the earth evenly, None for others.
+
+    Parameters
+    ----------
+    lon, lat : ndarray, shape (N,)
+        Places in degrees, such as those of a reduced Gaussian grid.
+    """
+    if not FEWEST <= len(lon) <= MOST_JOINED or np.ptp(lat) < TALL:
+        return None
+    ball = globes.directions(np.column_stack([lon, lat]))[:, 2]
+    try:
+        hull = scipy.spatial.ConvexHull(ball)
+    except scipy.spatial.QhullError:
+        return None
+    # The plane of a triangle is the nearer to the centre, the larger the hole without points is.
+    hole = float(np.arccos(np.clip(-hull.equations[:, 3].max(), -1, 1)))
+    if hole > HOLE * math.sqrt(4 * math.pi / len(lon)):
+        return None
+    sides = np.asarray(hull.simplices, dtype=np.intp)
+    a, b, c = (ball[corner] for corner in sides.T)
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
+    sides = np.where(inward[:, np.newaxis], sides[:, ::-1], sides)
+    # Triangles within the last parallel before a pole have no area on a map: the pole joins it.
+    level = np.ptp(lat[sides], axis=1) == 0
+    triangles, rings = [sides[~level]], []
+    for pole in (90.0, -90.0):
+        ring = np.unique(sides[level & (lat[sides[:, 0]] * pole > 0)])
+        if len(ring):
+            ring = ring[np.argsort(lon[ring])][:: int(math.copysign(1, pole))]
+            middle = np.full(len(ring), len(lon))
+            triangles.append(np.stack([ring, np.roll(ring, -1), middle], axis=1))
+            rings.append(ring)
+            lon, lat = np.append(lon, 0.0), np.append(lat, pole)
+    return Around(lon, lat, np.concatenate(triangles), rings)
 
 
 def with_turned_rows(rows: Raw, width: int) -> Raw:

@@ -106,7 +106,8 @@ def legibility(
     picture : array_like of shape (H, W, 3), or path, optional
         Picture of the mesh, by any program, in bytes or from 0 to 1, or its file.
     camera : pyvista.Camera, optional
-        Camera of ``picture``.
+        Camera of ``picture``, which fills it: of a picture with a margin for its key, such as that
+        of a look, pass the part without it, or read the plotter itself.
     key : Scene, (cmap, clim), or list of both, optional
         Meaning of the colours of ``picture``: light of a scene (direction, slope, heading, shape),
         or values of ``scalars`` on a colour map with limits. With an empty list colours mean
