@@ -26,7 +26,7 @@ __all__ = [
 CELLS = ("cell", "corner")
 #: Least and largest number of points that are joined, degrees of latitude that they must span, and
 #: the largest radius of a hole between them, in distances of even points.
-FEWEST, MOST_JOINED, TALL, HOLE = 100, 1_000_000, 150.0, 4.0
+FEWEST, MOST_JOINED, TALL, HOLE = 100, 1_000_000, 150.0, 2.0
 #: Decimals of corners that are one, in degrees or in metres.
 _SAME = 6
 
