@@ -227,11 +227,12 @@ def test_lengths_of_vectors_are_speeds_by_their_name_or_unit(name, unit, word):
 
 
 def test_flow_on_a_surface_is_its_evenly_spaced_strokes():
-    look = vizlight.look(sheet(0.05), "flow")
+    grid = sheet(0.05, 16)
+    look = vizlight.look(grid, "flow", size=(240, 160))
     ground, strokes = look.drawing.layers
     assert ground.keywords["scalars"] == "wind"
     assert strokes.mesh.keywords["confined"] is True
     # What is written is lines with their light.
     assert look.mesh.n_lines == strokes.mesh.run().n_lines
     assert np.ptp(look.mesh["luminance"]) > 0
-    assert len(vizlight.look(sheet(0.05), "flow", spacing=6.0).drawing.layers) > 2
+    assert len(vizlight.look(grid, "flow", spacing=3.0).drawing.layers) > 2
