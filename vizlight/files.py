@@ -44,6 +44,7 @@ from vizlight.mesh import (
     references,
     series,
     short_files,
+    tables,
 )
 from vizlight.mesh.creases import creases
 from vizlight.mesh.fills import without_fills
@@ -132,7 +133,7 @@ _SCENES = (".3mf", ".blend", ".dae", ".fbx", ".ifc", ".x3d")
 _SHAPES = (".step", ".stp", ".iges", ".igs", ".brep")
 #: Molecules and tables that no reader takes.
 _MOLECULES = (".mol", ".mol2", ".sdf", ".cif", ".gro", ".pqr", ".fchk", ".molden")
-_TABLES = (".csv", ".tsv", ".txt", ".xlsx", ".parquet", ".npy", ".npz")
+_TABLES = (".txt", ".xlsx", ".parquet", ".npy", ".npz")
 
 
 class FileError(ValueError):
@@ -150,7 +151,8 @@ def read(
 ) -> pv.DataSet:
     """Read a mesh from a file, in this process: a file that is damaged on purpose may end it.
 
-    These are files that PyVista reads, tractograms, rasters and netCDF grids.
+    These are files that PyVista reads, tractograms, rasters, netCDF grids, and tables (.csv) of
+    points that name columns of places in their first line: x, y, z or lon, lat.
 
     Parameters
     ----------
@@ -166,7 +168,7 @@ def read(
     overlay : path or sequence of paths, optional
         Files with values for the points, which become point arrays of their names: GIFTI (.gii),
         FreeSurfer's (lh.curv, .annot, .mgh) and .mz3 for a surface of a brain; grids of the same
-        points, such as the other component of a wind.
+        points, such as the other component of a wind; tables (.csv) of a row for each point.
     at : dict, optional
         Value or index along any other axis of a netCDF file by its name, such as
         ``{"number": 3}`` of an ensemble. Default: the first value.
@@ -439,6 +441,9 @@ def _whole(
     for path in overlays:
         if path.suffix.lower() in (*cf_grids.SUFFIXES, *georeference.SUFFIXES):
             cf_grids.add(mesh, _found(path, time), path)
+            continue
+        if path.suffix.lower() in tables.SUFFIXES:
+            tables.add(mesh, path)
             continue
         arrays, meant = brains.overlay(path, mesh.n_points)
         for name, rows in arrays.items():

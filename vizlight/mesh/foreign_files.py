@@ -28,6 +28,7 @@ from vizlight.mesh import (
     scene_files,
     short_files,
     su2,
+    tables,
     tetgen,
 )
 from vizlight.vtk.topology import place_numbers
@@ -528,5 +529,6 @@ _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = 
     ".las": _lidar, ".laz": _lidar, ".obj": _wavefront, ".off": geomview.read_off,
     ".pdb": molecules.of_pdb, ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
+    **dict.fromkeys(tables.SUFFIXES, tables.read),
     **dict.fromkeys(tetgen.SUFFIXES, tetgen.read),
 }  # fmt: skip
