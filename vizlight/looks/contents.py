@@ -240,7 +240,9 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
             if of_cells and GHOSTS in data:
                 # Cells that are hidden, such as those that others refine.
                 values = values[np.asarray(data[GHOSTS]) == 0]
-            array = _described(name, values, of_cells=of_cells, named=True)
+            # A kind that its file names is a datum, though it be the only one.
+            named = not meaning.flags(mesh, name)
+            array = _described(name, values, of_cells=of_cells, named=named)
             said = _words_of(mesh, name)
             if array is not None and array.role == "values" and meaning.flags(mesh, name):
                 array = replace(array, role="kinds")

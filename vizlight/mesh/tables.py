@@ -32,12 +32,12 @@ _MISSING = {"", "na", "n/a", "nan", "null", "none", "-"}
 
 
 def read(path: Path) -> pv.PolyData:
-    """Return the points of a table whose first line names columns of places, with their values.
+    """Return the points of a table by its columns of places, with their values.
 
     Raises
     ------
     ValueError
-        If it names none, or has no rows.
+        If its first line names none, or it has no rows.
     """
     columns, left_out = _columns(path)
     plain = {_UNIT.sub("", name).strip().lower(): name for name in reversed(columns)}
