@@ -35,6 +35,7 @@ from vizlight.mesh import (
     references,
     series,
     short_files,
+    tables,
 )
 from vizlight.mesh.creases import creases
 from vizlight.mesh.derived import (
@@ -131,7 +132,8 @@ def read(
 ) -> pv.DataSet:
     """Read a mesh from a file, in this process: a file that is damaged on purpose may end it.
 
-    These are files that PyVista reads, tractograms, rasters and netCDF grids.
+    These are files that PyVista reads, tractograms, rasters, netCDF grids, and tables (.csv) of
+    points that name columns of places in their first line: x, y, z or lon, lat.
 
     Parameters
     ----------
@@ -147,7 +149,7 @@ def read(
     overlay : path or sequence of paths, optional
         Files with values for the points, which become point arrays of their names: GIFTI (.gii),
         FreeSurfer's (lh.curv, .annot, .mgh) and .mz3 for a surface of a brain; grids of the same
-        points, such as the other component of a wind.
+        points, such as the other component of a wind; tables (.csv) of a row for each point.
     at : dict, optional
         Value or index along any other axis of a netCDF file by its name, such as
         ``{"number": 3}`` of an ensemble. Default: the first value.
@@ -422,6 +424,9 @@ def _whole(
             step = time if path.suffix.lower() in cf_grids.SUFFIXES else None
             cf_grids.add(mesh, _found(path, step), path)
             continue
+        if path.suffix.lower() in tables.SUFFIXES:
+            tables.add(mesh, path)
+            continue
         arrays, meant = brains.overlay(path, mesh.n_points)
         for name, rows in arrays.items():
             mesh.point_data[name] = rows
@@ -565,7 +570,7 @@ _WAYS: dict[tuple[str, ...], str] = {
     (*_UNPACK, ".zip"): "unpack it first",
     (".mol", ".mol2", ".sdf", ".gro", ".pqr", ".fchk", ".molden"):
         "Open Babel makes a .pdb of it: obabel '{name}' -O '{stem}.pdb'",
-    (".csv", ".tsv", ".txt", ".xlsx", ".parquet", ".npy", ".npz"):
+    (".txt", ".xlsx", ".parquet", ".npy", ".npz"):
         "read its columns by NumPy or pandas, and look at a mesh of them: "
         "mesh = pyvista.PolyData(rows of x, y, z), mesh['name'] = values",
     (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",

@@ -224,3 +224,15 @@ def test_lengths_of_vectors_are_speeds_by_their_name_or_unit(name, unit, word):
         said.add_array(part, {"units": unit})
     meaning.attach(grid, said)
     assert drawing.titled_length(grid, name).startswith(f"{word} of ")
+
+
+def test_flow_on_a_surface_is_its_evenly_spaced_strokes():
+    grid = sheet(0.05, 16)
+    look = vizlight.look(grid, "flow", size=(240, 160))
+    ground, strokes = look.drawing.layers
+    assert ground.keywords["scalars"] == "wind"
+    assert strokes.mesh.keywords["confined"] is True
+    # What is written is lines with their light.
+    assert look.mesh.n_lines == strokes.mesh.run().n_lines
+    assert np.ptp(look.mesh["luminance"]) > 0
+    assert len(vizlight.look(grid, "flow", spacing=3.0).drawing.layers) > 2

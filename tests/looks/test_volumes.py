@@ -113,3 +113,34 @@ def test_a_scan_fills_the_picture_and_not_its_box():
     depth = (look.mesh.points - eye.position) @ eye.direction
     across = np.abs((look.mesh.points - eye.position) @ right) / depth
     assert across.max() > 0.8 * np.tan(np.radians(eye.view_angle / 2))
+
+
+def scan(*layers, axes=()):
+    """Return a scan of shells, each a radius and a value, from the outermost, in noise or air."""
+    grid = pv.ImageData(dimensions=(32, 32, 32), origin=(-15.5,) * 3)
+    radius = np.linalg.norm(grid.points, axis=1)
+    values = np.arange(grid.n_points) % 17.0
+    for end, value in layers:
+        # Nothing is quite even but the ground of what was cut out.
+        values = np.where(radius < end, value + 0.01 * radius * (value != 0), values)
+    grid["NIFTI"] = values
+    meaning.attach(grid, meaning.Meaning(axes=[*axes]))
+    return grid
+
+
+def test_a_scan_of_a_body_shows_bones_or_slices_but_no_skin():
+    tissue = (13, 80), (8, 120)
+    look = vizlight.look(scan(*tissue, axes=meaning.ANATOMY))
+    assert look.shown == "slices"
+    assert look.drawing.keys[0]["cmap"] == "gray"
+    assert [other.python for other in look.others] == ["question='shape'"]
+    assert vizlight.look(scan(*tissue)).shown == "isosurface"
+    # What was cut out of its scan is an organ.
+    organ = vizlight.look(scan((99, 0), *tissue, axes=meaning.ANATOMY))
+    assert organ.shown == "isosurface"
+    assert [other.python for other in organ.others] == ["question='value'"]
+    bones = vizlight.look(scan((99, -1000), (13, 40), (8, 900), (7, 30)))
+    assert "NIFTI = 300" in bones.summary
+    assert "bone" in str(bones)
+    slices = vizlight.look(scan((99, -1000), (13, 40), (8, 900)), "value")
+    assert (slices.shown, slices.drawing.keys[0]["cmap"]) == ("slices", "gray")

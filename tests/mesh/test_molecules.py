@@ -168,3 +168,20 @@ def test_a_cif_without_atoms_is_refused(tmp_path, text, said):
     pytest.importorskip("gemmi")
     with pytest.raises(vizlight.files.FileError, match=said):
         vizlight.read(written(tmp_path, text, "a.cif"))
+
+
+def test_cations_of_a_crystal_are_not_joined_and_metals_are(tmp_path):
+    def atoms(first, second, side):
+        places = np.argwhere(np.ones((2, 2, 2)))
+        names = [second if sum(place) % 2 else first for place in places]
+        rows = [f"{name} {x} {y} {z}" for name, (x, y, z) in zip(names, side * places, strict=True)]
+        return written(tmp_path, "8\n\n" + "\n".join(rows) + "\n", "a.xyz")
+
+    oxide = vizlight.read(atoms("Mg", "O", 2.106))
+    assert oxide.n_lines == 12
+    ends = oxide.lines.reshape(-1, 3)[:, 1:]
+    assert (oxide["atom_type"][ends].sum(axis=1) == 20).all()
+    # All along edges and faces of the cube.
+    copper = vizlight.read(atoms("Cu", "Cu", 2.0))
+    assert copper.n_lines >= 12
+    assert vizlight.look(copper).shown == "molecule"

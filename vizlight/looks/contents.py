@@ -223,8 +223,8 @@ def says_heights(mesh: pv.DataSet, name: str) -> bool:
 def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...]:
     """Return the arrays that are data, the best for a picture first.
 
-    The active array comes first, of kinds if these have names, then numbers in
-    floating point, those of points before those of
+    The active array comes first, of kinds if these have colours of their own, then numbers in
+    floating point, components of vectors last, those of points before those of
     cells, those that describe the grid of a model last; then kinds, those of cells first, which are
     materials more often than those of points; each in the order of the mesh. Arrays made by filters
     of light are left out.
@@ -240,7 +240,9 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
             if of_cells and GHOSTS in data:
                 # Cells that are hidden, such as those that others refine.
                 values = values[np.asarray(data[GHOSTS]) == 0]
-            array = _described(name, values, of_cells=of_cells, named=True)
+            # A kind that its file names is a datum, though it be the only one.
+            named = not meaning.flags(mesh, name)
+            array = _described(name, values, of_cells=of_cells, named=named)
             said = _words_of(mesh, name)
             if array is not None and array.role == "values" and meaning.flags(mesh, name):
                 array = replace(array, role="kinds")
@@ -270,13 +272,16 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     active = (mesh.active_scalars_name, mesh.active_vectors_name)
     of_file = meaning.MEANING in mesh.field_data
 
-    def rank(array: Named) -> tuple[bool, bool, bool, bool]:
+    parts = {name for vector in joined for name in vector.name.split(",")}
+
+    def rank(array: Named) -> tuple[bool, bool, bool, bool, bool]:
         # An active array of kinds with names, such as elements, is the best.
         own = array.name in active and bool(meaning.flags(mesh, array.name))
         kinds = array.role == "kinds" and not own
         words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
         static = of_file and _OF_GRID.search(words) is not None
-        return (kinds, static, array.name not in active, array.of_cells != kinds)
+        is_inactive = array.name not in active
+        return (kinds, static, is_inactive, array.name in parts, array.of_cells != kinds)
 
     return tuple(sorted([*described, *joined], key=rank))
 

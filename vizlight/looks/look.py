@@ -513,7 +513,7 @@ def _look_of(rule: Rule, case: Case, drawing: Drawing, notes: Sequence[str]) -> 
     seen = "" if case.wishes.frame else drawing.camera.note
     reason = rule.why + (f"; seen {seen}" if seen else "")
     shown = drawing.words.split(" ", 1)[0] if rule.shown == "isosurface" else rule.shown
-    others = _others(case.contents, case)
+    others = _others(case.contents, case, shown)
     return Look(case.question, shown, array, reason, others, case.wishes, drawing)
 
 
@@ -750,7 +750,7 @@ def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
     return named
 
 
-def _others(contents: Contents, case: Case) -> tuple[Other, ...]:
+def _others(contents: Contents, case: Case, drawn: str) -> tuple[Other, ...]:
     """Return the other questions that the data can answer."""
     shown = None if case.array is None else case.array.name
     others = [
@@ -758,7 +758,10 @@ def _others(contents: Contents, case: Case) -> tuple[Other, ...]:
         for array in contents.arrays
         if array.name != shown
     ]
-    if case.question != "shape" and contents.flat_axis is None and contents.dimension > 1:
+    if drawn == "isosurface":
+        others.insert(0, Other("value", None, "question='value'", "--for value"))
+    is_shape = case.question == "shape" and drawn != "slices"
+    if not is_shape and contents.flat_axis is None and contents.dimension > 1:
         others.append(Other("shape", None, "question='shape'", "--for shape"))
     if is_whole_earth(map_parts.before_chart(case.data).run()):
         others.insert(0, Other(case.question, None, "globe=True", "--globe"))

@@ -131,7 +131,9 @@ RULES = (
     Rule("streamlines", _is_volume, "heading", ("vectors",), fields.flow, "a volume with vectors"),
     Rule("isosurface", _is_volume, "shape", ("values", "heights"), volumes.isosurface,
          "a volume of values"),
-    Rule("hull", _is_volume, "value", ("kinds", "values", "heights", "colors"), surfaces.values,
+    Rule("slices", _is_volume, "value", ("values", "heights"), volumes.slices,
+         "a volume of values"),
+    Rule("hull", _is_volume, "value", ("kinds", "colors"), surfaces.values,
          "a volume of a few kinds"),
     Rule("hull", _is_volume, "shape", (), surfaces.surface, "a solid without data"),
 )  # fmt: skip

@@ -31,6 +31,7 @@ from vizlight.mesh import (
     series,
     studio_3ds,
     su2,
+    tables,
     tetgen,
 )
 from vizlight.vtk.topology import place_numbers
@@ -547,5 +548,6 @@ _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = 
     ".3ds": studio_3ds.read,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
     **dict.fromkeys((".nhdr", ".nrrd"), brains.image_of_nrrd),
+    **dict.fromkeys(tables.SUFFIXES, tables.read),
     **dict.fromkeys(tetgen.SUFFIXES, tetgen.read),
 }  # fmt: skip

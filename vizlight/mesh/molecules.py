@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+import scipy
 from vtkmodules.vtkCommonDataModel import vtkMolecule
 from vtkmodules.vtkFiltersGeneral import vtkSplineFilter
 
@@ -18,8 +19,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from vizlight._types import Foreign
+    from vizlight._types import Bools, Foreign, Indices
 
+#: Atomic numbers of elements that are no metals.
+NO_METALS = [1, 2, *range(5, 11), *range(14, 19), *range(32, 37), *range(52, 55), 85, 86]
 #: Largest luma of the colour of an element.
 PALE = 0.7
 #: A coordinate in its columns.
@@ -318,15 +321,19 @@ def _joined(elements: Sequence[str], places: Sequence[Sequence[float]]) -> pv.Po
     bonds.SetInputData(molecule)
     drawn.SetInputConnection(bonds.GetOutputPort())
     drawn.Update()
-    lines = pv.wrap(drawn.GetOutput()).lines
-    alone = np.setdiff1d(np.arange(len(places)), lines.reshape(-1, 3)[:, 1:])
+    joined = pv.wrap(drawn.GetOutput()).lines.reshape(-1, 3)[:, 1:]
+    pairs = np.asarray(joined, dtype=np.intp)
+    of_atoms = np.array([numbers[name] for name in elements], dtype=np.intp)
+    pairs = pairs[~_are_bridged(pairs, of_atoms)]
+    lines = np.insert(pairs, 0, 2, axis=1).ravel()
+    alone = np.setdiff1d(np.arange(len(places)), pairs)
     if len(alone) > len(places) / 2:
         # Beads of a coarse model, or one atom of each residue, that meet by chance.
         alone, lines = np.arange(len(places)), lines[:0]
     mesh = pv.PolyData(
         np.array(places), lines=lines, verts=np.column_stack([np.ones_like(alone), alone])
     )
-    mesh.point_data["atom_type"] = [numbers[name] for name in elements]
+    mesh.point_data["atom_type"] = of_atoms
     radii = {name: table.GetVDWRadius(numbers[name]) for name in numbers}
     mesh.point_data["radius"] = [radii[name] for name in elements]
     mesh.set_active_scalars("atom_type")
@@ -339,10 +346,29 @@ def _joined(elements: Sequence[str], places: Sequence[Sequence[float]]) -> pv.Po
         paler = [part * min(1, PALE / light) for part in color]
         kinds.append((number, table.GetSymbol(number), paler))
     said = meaning.Meaning()
+    said.add_array("atom_type", {"long_name": "element"})
     said.add_kinds("atom_type", kinds)
     said.arrays["atom_type"]["long_name"] = "element"
     meaning.attach(mesh, said)
     return mesh
+
+
+def _are_bridged(pairs: Indices, numbers: Indices) -> Bools:
+    """Return which bonds are of two metals that are joined to one atom of another element.
+
+    They are cations of an ionic crystal, such as the magnesium of its oxide, and smaller than their
+    radii as atoms.
+    """
+    is_metal = ~np.isin(numbers, NO_METALS)
+    between: Bools = np.asarray(is_metal[pairs].all(axis=1))
+    if not between.any():
+        return between
+    ends = pairs[is_metal[pairs].sum(axis=1) == 1]
+    ends = np.where(is_metal[ends[:, :1]], ends, ends[:, ::-1])
+    size = (len(numbers), len(numbers))
+    joined = scipy.sparse.csr_array((np.ones(len(ends), np.intp), tuple(ends.T)), shape=size)
+    shared = joined[pairs[:, 0]].multiply(joined[pairs[:, 1]]).sum(axis=1)
+    return np.asarray(between & (shared > 0))
 
 
 def _warn_of_states(path: Path, count: int) -> None:

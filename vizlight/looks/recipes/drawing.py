@@ -639,12 +639,12 @@ def range_of(mesh: pv.DataSet, name: str) -> tuple[float, float]:
 def colors_of_kinds(mesh: Step, array: Named, keywords: Keywords) -> Keywords:
     """Return the keywords that give each kind a colour of its own."""
     kinds = kinds_of(mesh.run(), array.name)
-    if "cmap" not in keywords and len(kinds) == 1:
+    names = meaning.flags(mesh.run(), array.name)
+    if "cmap" not in keywords and len(kinds) == 1 and kinds[0] not in names:
         return keywords | {"cmap": _of_one(kinds[0])}
     # Numbers of parts that are no whole numbers have no colours of their own.
     if "cmap" in keywords or any(kind != round(kind) for kind in kinds):
         return keywords
-    names = meaning.flags(mesh.run(), array.name)
     named = {kind: names.get(kind, f"{kind:g}") for kind in kinds}
     colors = meaning.flags(mesh.run(), array.name, "colors")
     of_file = {kind: colors[kind] for kind in kinds if kind in colors}

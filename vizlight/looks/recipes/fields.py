@@ -258,8 +258,11 @@ def turn_of(mesh: pv.DataSet, name: str) -> float:
 def flow(case: Case) -> Drawing:
     """Draw streamlines of the vectors in a volume as strokes, in the colours of their speed.
 
-    Where a scene, another question or an isosurface is asked for, they are lit.
+    Where a scene, another question or an isosurface is asked for, they are lit. On a surface they
+    are the strokes of its vectors, unless options ask for other lines.
     """
+    if (drawing := _along_surface(case)) is not None:
+        return drawing
     array = case.needed_array
     mesh = case.wishes.joined(case.data, array)
     if array.of_cells:
@@ -312,6 +315,23 @@ def flow(case: Case) -> Drawing:
     if case.map_frame is None:
         layers += [*_hull(mesh), *_floor(case, box, camera), *case.boxed(box, camera)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
+
+
+def _along_surface(case: Case) -> Drawing | None:
+    """Return the drawing of evenly spaced strokes on a surface, None where it needs other lines."""
+    asked = case.wishes.light.keys() - {"tangents"}
+    if case.contents.dimension != 2 or asked or case.wishes.make_scene is not None:
+        return None
+    drawing = vectors(
+        replace(case, question="direction", wishes=replace(case.wishes, question="auto"))
+    )
+    strokes = drawing.layers[-1].mesh
+    if strokes.path != "vizlight.streamlines":
+        return None
+    # Files of lines have their light.
+    scene = case.scene(drawing.camera)
+    lit = Step("lit", strokes.path, strokes.arguments[0], scene, **strokes.keywords)
+    return replace(drawing, lit=lit, kind=None, doubt=None)
 
 
 def moving(drawing: Drawing) -> Drawing | None:

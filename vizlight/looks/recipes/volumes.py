@@ -14,9 +14,11 @@ from vizlight.looks.framing import eye_around
 from vizlight.looks.recipes import fields, surfaces
 from vizlight.looks.recipes.drawing import LIGHTNESS, Doubt, Drawing, Layer, range_of
 from vizlight.looks.steps import Step
+from vizlight.mesh import meaning
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
+    from vizlight._types import Array, Bools
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
@@ -24,6 +26,12 @@ if TYPE_CHECKING:
 LEAST_OF_BOX = 0.4
 #: Fewest voxels along each side of a scan, and the most of its sides that it closes.
 VOXELS, MOST_CLOSED = 30, 0.4
+#: Numbers of air and bone in computed tomography, in Hounsfield units, and how near to that of air
+#: others are its own; least share of air, and shares of bone, of such a scan.
+AIR, BONE, NEAR_AIR, MUCH_AIR, BONES = -1000.0, 300.0, 50.0, 0.05, (0.002, 0.3)
+#: Share of a scan that has its lowest value from which on an organ was cut out of it, and the
+#: number of values that are looked at.
+CUT_OUT, SAMPLE = 0.5, 100_000
 #: Share of its range through which a second array runs on an isosurface that shows it.
 LEAST_SPREAD = 0.02
 #: Most pieces of an isosurface, where none has this share of it.
@@ -35,16 +43,28 @@ PLAIN_NORMALS = {"cell_normals": False, "split_vertices": False, "consistent_nor
 
 
 def isosurface(case: Case) -> Drawing:
-    """Draw the isosurface through the steepest places, or three slices where none is good."""
+    """Draw the isosurface through the steepest places, or three slices where none is good.
+
+    The skin of a scan of a body tells least of it: bones are shown where their numbers are known,
+    else slices, unless an organ was cut out before.
+    """
     array = case.needed_array
-    notes = []
+    notes, has_bones = [], False
     if _is_scan(case, array):
+        values = _sample(case, array)
+        has_bones = _has_bones(values)
+        is_whole = np.mean(values == values.min()) < CUT_OUT
+        if case.wishes.question == "auto" and is_whole and not has_bones and _is_of_body(case):
+            return slices(case)
         # The edge of a mask would be a staircase of voxels.
         smooth = Step("smooth", ".gaussian_smooth", case.data, std_dev=1.0, scalars=array.name)
         case = replace(case, data=smooth)
         notes = ["the values are smoothed by one voxel"]
     volume = case.data
     level, contrast = levels.best_level(case.data.run(), array.name)
+    if has_bones:
+        level, contrast = BONE, levels.GOOD
+        notes.append("bone, by the numbers of computed tomography, in which air is -1000")
     if contrast < levels.GOOD:
         steepest = f"the steepest is {contrast:.1f} times the mean"
         return slices(case, f"; no isosurface stands out ({steepest})")
@@ -122,19 +142,45 @@ def _is_rough(case: Case, mesh: Step, camera: Step) -> bool:
 def slices(case: Case, why: str = "") -> Drawing:
     """Draw three slices through the middle of a volume, in the colours of its values."""
     array = case.needed_array
+    values = _sample(case, array)
+    # As radiologists print them.
+    is_gray = _is_air(values).any() if np.any(values < 0) else _is_of_body(case)
     mesh = Step("slices", ".slice_orthogonal", case.data)
     mesh = Step("joined", ".combine", mesh)
     mesh = Step("slices", ".extract_surface", mesh, algorithm="dataset_surface")
     box = Step("box", ".outline", mesh)
     camera = case.camera(box, case.eye(mesh), boxed=True)
     scene = case.wishes.scene("none", camera)
-    colors, note = case.ranged_of(case.data, array, LIGHTNESS)
+    colors, note = case.ranged_of(case.data, array, "gray" if is_gray else LIGHTNESS)
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     lit = case.lit(mesh, scene)
     words = f"slices of {array.name} through the middle{why}"
     layers = [Layer(mesh, shown), *case.boxed(box, camera)]
     notes = [note] if note else []
     return Drawing(layers, camera, scene, lit, words, [case.bar(array, colors)], notes)
+
+
+def _sample(case: Case, array: Named) -> Array:
+    """Return some of the finite values of a volume."""
+    rows: Array = np.asarray(case.data.run()[array.name], dtype=np.float64)
+    rows = rows[:: max(len(rows) // SAMPLE, 1)]
+    return rows[np.isfinite(rows)]
+
+
+def _is_air(values: Array) -> Bools:
+    """Return which values are those of air in computed tomography."""
+    return np.asarray(np.abs(values - AIR) < NEAR_AIR)
+
+
+def _has_bones(values: Array) -> bool:
+    """Return whether a scan has much air and some bone by the numbers of computed tomography."""
+    bones = float(np.mean(values > BONE))
+    return float(np.mean(_is_air(values))) > MUCH_AIR and BONES[0] < bones < BONES[1]
+
+
+def _is_of_body(case: Case) -> bool:
+    """Return whether a file says that axes are those of a body."""
+    return meaning.ways(case.data.run()) == (*meaning.ANATOMY.values(),)
 
 
 def _is_scan(case: Case, array: Named) -> bool:

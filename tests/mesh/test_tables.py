@@ -1,0 +1,52 @@
+"""Tables of text: places, values, missing numbers, and what is refused."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight.files import FileError
+
+
+def written(path, text):
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_columns_of_places_are_points_with_the_others_as_values(tmp_path):
+    path = written(tmp_path / "a.csv", "#X,y [m],z,p\n0,1,2,7\n3,4,5,NA\n\n6,,8,9\n")
+    with pytest.warns(UserWarning, match="left out are 1 rows without a place"):
+        mesh = vizlight.read(path)
+    np.testing.assert_array_equal(mesh.points, [(0, 1, 2), (3, 4, 5)])
+    np.testing.assert_array_equal(mesh["p"], [7, np.nan])
+
+
+def test_longitudes_are_a_map_with_decimal_commas(tmp_path):
+    text = "station;lon;lat;t (K)\n'A';10,5;50;280\n'B';11;51,25;281,5\n"
+    with pytest.warns(UserWarning, match="left out are columns of text: station"):
+        mesh = vizlight.read(written(tmp_path / "a.csv", text))
+    np.testing.assert_array_equal(mesh.points, [(10.5, 50, 0), (11, 51.25, 0)])
+    assert mesh.field_data["unit"][0] == "degree"
+    assert mesh["t (K)"].tolist() == [280, 281.5]
+
+
+@pytest.mark.parametrize(("text", "words"), [
+    ("a,b\n1,2\n", r"no names of places \(x, y, z or lon, lat\) but 'a', 'b'; name them so"),
+    ("x,y\n", "no rows below its first line"),
+    ("x,y\n1,2,3\n", r"a row has 3 columns for 2 names: \['1', '2', '3'\]"),
+    ("x,y\nnan,1\n", "no rows with places"),
+    ("", "no rows below its first line"),
+])  # fmt: skip
+def test_other_tables_are_refused_with_a_remedy(text, words, tmp_path):
+    with pytest.raises(FileError, match=words):
+        vizlight.read(written(tmp_path / "a.csv", text))
+
+
+def test_a_table_over_a_mesh_has_a_row_for_each_point(tmp_path):
+    mesh = pv.Plane(i_resolution=1, j_resolution=1).triangulate()
+    mesh.save(tmp_path / "a.vtp")
+    table = written(tmp_path / "b.tsv", "p\tq\n1\t5\n2\t6\n3\t7\n4\t8\n")
+    assert vizlight.read(tmp_path / "a.vtp", overlay=table)["q"].tolist() == [5, 6, 7, 8]
+    short = written(tmp_path / "c.csv", "p\n1\n")
+    with pytest.raises(FileError, match="'.*c.csv' has 1 rows for a mesh of 4 points"):
+        vizlight.read(tmp_path / "a.vtp", overlay=short)
