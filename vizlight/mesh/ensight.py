@@ -349,8 +349,10 @@ class _Binary(_Text):
         if self.at == len(self.data):
             return ""
         begin, end = self._pass(_LINE)
-        text = self.data[begin:end].partition(b"\0")[0]
-        return " ".join(text.decode("latin-1").lower().split())
+        words = self.data[begin:end].partition(b"\0")[0].decode("latin-1").lower().split()
+        if not words:
+            raise ValueError("a line has no words")
+        return " ".join(words)
 
     def _pass(self, count: int) -> tuple[int, int]:
         begin, self.at = self.at, self.at + count

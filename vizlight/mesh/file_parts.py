@@ -35,6 +35,22 @@ def warn_of_last_line(path: Path, data: bytes) -> None:
         _check.warn(f"file: '{path}' may be cut in its last line, which has no line break")
 
 
+def warn_of_more(path: Path, count: int, what: str) -> None:
+    """Warn of a part of a file that is beyond what it states, if there is one.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    count : int
+        Number of lines, numbers or bytes.
+    what : str
+        Word for them.
+    """
+    if count > 0:
+        _check.warn(f"file: '{path}' has {count} {what} more than it states, which are left out")
+
+
 def last(file: BinaryIO) -> bytes:
     """Return the last bytes of a file."""
     file.seek(-min(_END, file.seek(0, 2)), 2)
