@@ -74,6 +74,11 @@ WRONG = {
     "no end": ("a.nrrd", NRRD[:40], "header"),
     "dimension": ("a.nrrd", NRRD.replace(b"dimension: 3", b"dimension: 100000"), "3 sizes for"),
     "sizes": ("a.nrrd", NRRD.replace(b"sizes: 10", b"sizes: 1000"), "of 12000 bytes"),
+    "late": (
+        "a.nrrd",
+        NRRD.replace(b"dimension: 3\n", b"").replace(b"\n\n", b"\ndimension: 3\n\n"),
+        "its sizes stand before their number",
+    ),
     "twice": ("a.nrrd", NRRD.replace(b"\n\n", b"\ntype: int\n\n"), "a key stands twice"),
     "no data": ("a.nhdr", NRRD[:-121] + b"data file: b.raw\n", "'b.raw' are missing"),
     "no break": ("a.nhdr", NRRD[:-121] + b"data file: b.raw", "last line has no line break"),
@@ -88,6 +93,7 @@ WRONG = {
     "short atom": ("a.pdb", ATOM[:53], "no numbers in the columns"),
     "nodes": ("a.dat", TECPLOT.replace(b"N=3", b"N=300"), "of 903 numbers"),
     "negative": ("a.tec", TECPLOT.replace(b"E=1", b"E=-5"), "negative"),
+    "quotation": ("a.dat", TECPLOT.replace(b'"Z"', b'"Z'), "a name in it has no end"),
     "no zone": ("a.dat", TECPLOT[:9], "no VARIABLES and ZONE"),
     "order": (
         "a.mdpa",

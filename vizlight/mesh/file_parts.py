@@ -39,8 +39,8 @@ def warn_of_last_line(path: Path, data: bytes) -> None:
         _check.warn(f"file: '{path}' may be cut in its last line, which has no line break")
 
 
-def warn_of_more(path: Path, count: int, what: str) -> None:
-    """Warn of a part of a file that is beyond what it states, if there is one.
+def warn_of_more(path: Path, count: int, unit: str) -> None:
+    """Warn of a part of a file beyond the size that it states, if there is one.
 
     Parameters
     ----------
@@ -48,11 +48,11 @@ def warn_of_more(path: Path, count: int, what: str) -> None:
         Path of the file.
     count : int
         Number of lines, numbers or bytes.
-    what : str
+    unit : str
         Word for them.
     """
     if count > 0:
-        _check.warn(f"file: '{path}' has {count} {what} more than it states, which are left out")
+        _check.warn(f"file: '{path}' has {count} {unit} more than it states, which are left out")
 
 
 def last(file: BinaryIO) -> bytes:

@@ -258,6 +258,8 @@ def _nrrd(file: BinaryIO) -> str:
         return "its last line has no line break, for which VTK's reader waits"
     if len(sizes) != int(fields["dimension"]):
         return f"{len(sizes)} sizes for {fields['dimension']} dimensions"
+    if [*fields].index("sizes") < [*fields].index("dimension"):
+        return "its sizes stand before their number"
     if fields["encoding"].lower() not in ("raw", "gzip", "gz"):
         return ""
     is_raw = fields["encoding"].lower() == "raw"
@@ -320,6 +322,8 @@ def _tecplot(file: BinaryIO) -> str:
     zones = re.findall(rb"(?im)^\s*ZONE\b([^\n]*(?:\n[^\n]*=[^\n]*)*)", data)
     if names is None:
         return "no VARIABLES and ZONE are in it"
+    if data.count(b'"') % 2:
+        return "a name in it has no end, for which VTK's reader waits"
     # Some zones share variables, have some at cells, or repeat numbers.
     if re.search(rb"(?i)\*|VARSHARE|VARLOCATION", data):
         return ""
