@@ -25,6 +25,7 @@ from vizlight.mesh import (
     blocks,
     brains,
     cf_grids,
+    fills,
     foreign_files,
     georeference,
     height_grids,
@@ -180,7 +181,7 @@ def read(
     Raises
     ------
     TypeError
-        If ``at`` is no dict.
+        If ``at`` is no dict, or ``nodata`` no number.
     FileError
         If the file does not exist, cannot be read or is damaged, the package that reads it is not
         installed, or it has no points or no such step.
@@ -199,7 +200,7 @@ def read(
     messages of VTK are told apart by thread, and no stream is redirected. Libraries other than VTK
     may print.
     """
-    _check_selection(time, at)
+    nodata = _check_selection(time, at, nodata)
     if cf_grids.is_grid(path):
         return cf_grids.of_dataset(path, time, at, nodata)
     with _check.held():
@@ -234,7 +235,7 @@ def read_parts(
     TypeError, FileError
         As for :func:`vizlight.read`.
     """
-    _check_selection(time, at)
+    nodata = _check_selection(time, at, nodata)
     with _check.held():
         return _read(path, time, overlay, at, nodata, whole=False)
 
@@ -335,11 +336,12 @@ def _faults(errors: list[str]) -> list[str]:
     return [error for error in errors if not any(search(error) for search in harmless)]
 
 
-def _check_selection(time: object, at: object) -> None:
+def _check_selection(time: object, at: object, nodata: object) -> float | None:
     if getattr(time, "ndim", 0):
         expected = "the time of a step, or its index"
         raise TypeError(_check.message("time", expected, _check.describe(time)))
     _check.instance("at", at, dict, optional=True)
+    return fills.checked(nodata)
 
 
 def _check_there(path: Path, overlays: Sequence[Path]) -> None:

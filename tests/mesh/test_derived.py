@@ -50,6 +50,7 @@ test_bad_arrays = refusals(
     (lambda g: files.surface_of(g, "r", 99.0), "level: expected a value between 0.8.* and 6.0"),
     (lambda g: files.surface_of(g, "r", np.nan), "level: expected a finite number"),
     (lambda g: files.warped(g, "r", np.inf), "exaggeration: expected a finite number"),
+    (lambda g: files.warped(g, "\ud800", 1.0), "warp: expected .* of valid characters"),
 )
 
 

@@ -114,6 +114,12 @@ def test_cases_whose_files_do_not_fit(tmp_path, kind):
         vizlight.read(written(tmp_path, case, geo))
 
 
+def test_a_shift_in_a_binary_file(tmp_path):
+    path = written(tmp_path, CASE, geometry(binary=True), binary=True)
+    (tmp_path / "a.vec").write_bytes(b"-" + (tmp_path / "a.vec").read_bytes())
+    assert short_files.missing_part(path) == "'a.vec': a line has no words"
+
+
 def test_each_of_several_steps_in_a_file_is_followed(tmp_path):
     case = CASE.partition(b"VARIABLE")[0]
     step = b"BEGIN TIME STEP\n" + GEO + b"END TIME STEP\n"

@@ -46,6 +46,17 @@ def test_nodata_names_the_value():
     assert fills.without_missing("t", rows, float("nan"))[0] is rows
 
 
+@pytest.mark.parametrize("value", ["a", np.array([1.0, 1]), [1]])
+def test_a_value_for_none_is_a_number(value, tmp_path):
+    (tmp_path / "a.asc").write_text("")
+    for call in (
+        lambda: files.read(tmp_path / "a.asc", nodata=value),
+        lambda: fills.checked(value),
+    ):
+        with pytest.raises(TypeError, match="nodata: expected a"):
+            call()
+
+
 def test_a_mesh_and_its_picture_are_without_them():
     sheet = pv.ImageData(dimensions=(12, 10, 1))
     x, y, _ = sheet.points.T

@@ -78,6 +78,19 @@ def test_what_is_not_whole_is_refused(text, match, tmp_path):
         read(tmp_path, text)
 
 
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("a.off", f"OFF\n4 0 0\n{SQUARE}1 1\n# end\n", "1 lines"),
+        ("a.mesh", f"MESH 2 2 {SQUARE} 7 7", "2 numbers"),
+    ],
+)
+@pytest.mark.filterwarnings("default:.*left out")
+def test_more_than_is_stated(name, text, words, tmp_path):
+    with pytest.warns(UserWarning, match=f"has {words} more than it states, which are left out"):
+        assert read(tmp_path, text, name).n_points == 4
+
+
 @pytest.mark.parametrize("order", ["ascii", "<", ">"])
 def test_places_of_ply_keep_their_digits(order, tmp_path):
     points = np.array([[5e6, 4e5, 0], [5e6 + 0.25, 4e5, 0], [5e6, 4e5 + 0.25, 0]])

@@ -173,6 +173,9 @@ def test_lists_of_vertices_are_left_out(form, tmp_path):
 def test_more_rows_than_stated(tmp_path):
     with pytest.warns(UserWarning, match="has 1 lines more than it states, which are left out"):
         assert read(tmp_path, text(*POINTS, "5 5 5", "a comment")).n_points == 4
+    data = text(form="binary_little_endian") + np.zeros((4, 3), "<f4").tobytes()
+    with pytest.warns(UserWarning, match="has 3 bytes more than it states"):
+        assert read(tmp_path, data + b"abc\n").n_points == 4
 
 
 def test_counts_in_the_billions(tmp_path):

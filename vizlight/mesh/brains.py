@@ -418,7 +418,7 @@ def image_of_nrrd(path: Path) -> pv.DataSet:
     path : pathlib.Path
         Path of the file. The array of labels is named "segment" if it has segments.
     """
-    image: pv.DataSet = pv.read(path, validate=False)
+    image: pv.DataSet = series.unchecked(pv.get_reader(path))  # type: ignore[no-untyped-call]
     _name_segments(image, path)
     return image
 

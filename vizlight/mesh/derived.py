@@ -188,8 +188,8 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
         If the array does not exist or has no finite value, or the factor is not finite.
     """
     check_dataset(mesh)
-    mesh = records.averaged(mesh, name)
     _check.text("warp", name, expected="the name of a point array")
+    mesh = records.averaged(mesh, name)
     rows = np.asarray(mesh.point_data[name]) if name in mesh.point_data else np.empty(0)
     if rows.dtype.kind != "f" or rows.shape[1:] != (3,):
         rows = np.asarray(_scalars(mesh, "warp", name))[:, np.newaxis]

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 
 import numpy as np
 
+from vizlight.mesh import file_parts
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -306,9 +308,7 @@ class _Text:
         """Go on past rows of numbers."""
         begin, end = self._pass(rows)
         text = self._bytes[begin:end]
-        gap = text <= ord(" ")
-        words = int(np.count_nonzero(gap[:-1] & ~gap[1:])) + bool(len(gap) and not gap[0])
-        if words != rows * width or not _DIGITS[text].all():
+        if file_parts.count_words(text) != rows * width or not _DIGITS[text].all():
             raise ValueError(f"{rows} lines are not {rows * width} numbers")
 
     def skip_rows(self, counts: Raw) -> None:
@@ -349,8 +349,10 @@ class _Binary(_Text):
         if self.at == len(self.data):
             return ""
         begin, end = self._pass(_LINE)
-        text = self.data[begin:end].partition(b"\0")[0]
-        return " ".join(text.decode("latin-1").lower().split())
+        words = self.data[begin:end].partition(b"\0")[0].decode("latin-1").lower().split()
+        if not words:
+            raise ValueError("a line has no words")
+        return " ".join(words)
 
     def _pass(self, count: int) -> tuple[int, int]:
         begin, self.at = self.at, self.at + count

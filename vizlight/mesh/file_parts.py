@@ -6,11 +6,15 @@ import contextlib
 import mmap
 from typing import TYPE_CHECKING, BinaryIO
 
+import numpy as np
+
 from vizlight import _check
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+
+    from numpy.typing import NDArray
 
 #: Bytes of a number by a part of the name of its type: the first that is in it.
 BYTES = {
@@ -33,6 +37,22 @@ def warn_of_last_line(path: Path, data: bytes) -> None:
     """
     if not data.endswith((b"\n", b"\r")):
         _check.warn(f"file: '{path}' may be cut in its last line, which has no line break")
+
+
+def warn_of_more(path: Path, count: int, unit: str) -> None:
+    """Warn of a part of a file beyond the size that it states, if there is one.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    count : int
+        Number of lines, numbers or bytes.
+    unit : str
+        Word for them.
+    """
+    if count > 0:
+        _check.warn(f"file: '{path}' has {count} {unit} more than it states, which are left out")
 
 
 def last(file: BinaryIO) -> bytes:
@@ -63,3 +83,9 @@ def missing_bytes(file: BinaryIO, least: int) -> str:
     """Return how many bytes a file has of the least that it states, or "" if all."""
     count = file.seek(0, 2)
     return f"{count} of {least} bytes are there" if count < least else ""
+
+
+def count_words(data: bytes | NDArray[np.uint8]) -> int:
+    """Return the number of words of a text."""
+    gap = np.frombuffer(data, np.uint8) <= ord(" ")
+    return int(np.count_nonzero(gap[:-1] & ~gap[1:])) + bool(len(gap) and not gap[0])

@@ -118,6 +118,26 @@ def say(path: object, words: Sequence[str]) -> list[str]:
     return [f"{each}, taken for missing" for each in words]
 
 
+def checked(nodata: object) -> float | None:
+    """Return a value that stands for none, NaN for no further one.
+
+    Parameters
+    ----------
+    nodata : object
+        Value of a caller.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no number.
+    """
+    if nodata is None:
+        return None
+    if isinstance(nodata, float | np.floating) and math.isnan(nodata):
+        return math.nan
+    return _check.number("nodata", nodata)
+
+
 def without_fills(mesh: DataSetT, nodata: float | None = None, /) -> DataSetT:
     """Return a mesh with NaN where values are missing though nothing says so.
 
@@ -137,8 +157,7 @@ def without_fills(mesh: DataSetT, nodata: float | None = None, /) -> DataSetT:
     """
     if not isinstance(mesh, pv.DataSet):
         raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
-    if nodata is not None and nodata == nodata:
-        nodata = _check.number("nodata", nodata)
+    nodata = checked(nodata)
     known, notes = mesh, list[str]()
     for of_cells, data in enumerate((mesh.point_data, mesh.cell_data)):
         for name in data:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, file_parts
 from vizlight.mesh.nspace import POSITION
 
 if TYPE_CHECKING:
@@ -62,6 +62,7 @@ def read_off(path: Path) -> pv.PolyData:
         words = [*rows[0][3:], *(word for row in rows[1:] for word in row)]
         size = width + 3 * bool(normal) + 4 * bool(coloured) + 2 * bool(textured)
         rows[1:] = _broken(words, points, faces, size)
+    file_parts.warn_of_more(path, len(rows) - 1 - points - faces, "lines")
     table = _table(rows[1 : points + 1])
     mesh = _with_vertices(table, width, bool(normal), bool(coloured), bool(textured))
     ids, ends, colors = [], [0], []
@@ -132,6 +133,7 @@ def read_mesh(path: Path) -> pv.PolyData:
     count = columns * rows
     if len(words) - 2 < count * width:
         raise ValueError(f"{len(words) - 2} of {count * width} numbers are there")
+    file_parts.warn_of_more(path, len(words) - 2 - count * width, "numbers")
     table = _table([words[2 : 2 + count * width]]).reshape(count, width)
     if heights:
         grid = np.indices((rows, columns)).reshape(2, -1)[::-1].T

@@ -90,6 +90,7 @@ def read(path: Path) -> pv.PolyData:
         at = head.end()
         for element in elements:
             at = _read_bytes(data, at, element, ">" if "big" in form else "<")
+        file_parts.warn_of_more(path, len(data[at:].strip()), "bytes")
     return _mesh({element.name: element for element in elements}, path)
 
 
@@ -138,8 +139,8 @@ def _read_text(data: bytes, elements: list[_Element], path: Path) -> None:
     if first == len(lines) and lines:
         file_parts.warn_of_last_line(path, data)
     # Other lines are comments of other programs.
-    elif (more := sum(_NUMBER.match(line) is not None for line in lines[first:])) > 0:
-        _check.warn(f"file: '{path}' has {more} lines more than it states, which are left out")
+    more = sum(_NUMBER.match(line) is not None for line in lines[first:])
+    file_parts.warn_of_more(path, more, "lines")
 
 
 def _short(there: int, expected: int) -> ValueError:

@@ -17,10 +17,8 @@ import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
-import numpy as np
-
 from vizlight import _check, _supervise
-from vizlight.mesh import ensight, file_parts, gltf, legacy_vtk, references
+from vizlight.mesh import ensight, file_parts, gltf, legacy_vtk, references, vtk_xml
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -30,8 +28,6 @@ __all__ = ["missing_part"]
 
 #: Bytes in which a header stands that has no end of its own.
 _HEAD = 4096
-#: Largest ratio of data to what a compressor of VTK makes of them.
-_PACKED = 8000
 #: Ends of names of files that name their pieces, all of which are read.
 _INDICES = (".vtm", ".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu")
 
@@ -68,76 +64,10 @@ def missing_part(path: Path, /) -> str:
     return lacking
 
 
-def _xml(file: BinaryIO) -> str:
-    """Look for the end of a file, which stands after its data."""
-    if not file.read(100).lstrip().startswith((b"<?xml", b"<VTKFile")):
-        return ""  # VTK's reader says so
-    if b"</VTKFile>" not in file_parts.last(file):
-        return "its end is missing"
-    # What is packed is at most so much larger.
-    most, wrong = _PACKED * file.seek(0, 2), ""
-    with file_parts.mapped(file) as text:
-        for start in (b" NumberOf", b" index="):
-            for match in (_COUNT.match(text, at) for at in file_parts.places(text, start)):
-                # Each block takes some bytes, but for those that are empty.
-                limit = len(text) if start == b" index=" else most
-                if match and not 0 <= int(match[2]) <= limit:
-                    wrong = f"{match[1].decode()} is {match[2].decode()}"
-    return wrong
-
-
-#: A count or an index of VTK's XML.
-_COUNT = re.compile(rb' (\w+)="\s*(-?\d+)')
-
-
-def _grid(file: BinaryIO) -> str:
-    """Compare the extents of the pieces of a grid with that of the whole.
-
-    VTK leaves memory that no piece covers uninitialised, and a huge whole takes it long.
-    """
-    if lacks := _xml(file):
-        return lacks
-    with file_parts.mapped(file) as text:
-        # Binary data follow.
-        end = text.find(b"<AppendedData")
-        head = text[:end] if end >= 0 else text[:]
-    extents = re.finditer(rb'<(?:(Piece)|\w+)[^<>]*?\s(?:Whole)?Extent="([^"]*)"', head)
-    whole, *pieces = [(match[1], [int(word) for word in match[2].split()]) for match in extents]
-    boxes = np.array([extent for piece, extent in pieces if piece])
-    if len(whole[1]) != 6 or boxes.shape[1:] != (6,):
-        return "its extents are no six numbers"
-    covered = np.where(np.arange(6) % 2, boxes.max(axis=0), boxes.min(axis=0)).tolist()
-    return "" if covered == whole[1] else f"its pieces cover {covered} of {whole[1]}"
-
-
 #: First bytes of netCDF 3 files that SciPy maps, of others, and of HDF5 files.
 _CLASSIC, _LARGE, _HDF = (b"CDF\x01", b"CDF\x02"), b"CDF\x05", b"\x89HDF\r\n\x1a\n"
 #: Place of the end of the file in the first block of HDF5, by the version of the block.
 _HDF_END = {0: 40, 1: 44, 2: 28, 3: 28}
-
-
-def _blocks(file: BinaryIO) -> str:
-    """Look for numbers of blocks that stand twice: VTK keeps the last one."""
-    if lacks := _xml(file):
-        return lacks
-    file.seek(0)
-    numbers = [set[bytes]()]
-    for end, words, alone in _TAG.findall(file.read()):
-        if end:
-            numbers.pop()
-            continue
-        for number in _INDEX.findall(words):
-            if number in numbers[-1]:
-                return f"two blocks have the index {number.decode()}"
-            numbers[-1].add(number)
-        if not alone:
-            numbers.append(set())
-    return ""
-
-
-#: Tags of XML, and the numbers of blocks in them.
-_TAG = re.compile(rb"<(/?)\w+((?:\s[^<>]*?)?)(/?)>")
-_INDEX = re.compile(rb'\sindex="\s*(\d+)')
 
 
 def _gzip(file: BinaryIO) -> str:
@@ -328,6 +258,8 @@ def _nrrd(file: BinaryIO) -> str:
         return "its last line has no line break, for which VTK's reader waits"
     if len(sizes) != int(fields["dimension"]):
         return f"{len(sizes)} sizes for {fields['dimension']} dimensions"
+    if [*fields].index("sizes") < [*fields].index("dimension"):
+        return "its sizes stand before their number"
     if fields["encoding"].lower() not in ("raw", "gzip", "gz"):
         return ""
     is_raw = fields["encoding"].lower() == "raw"
@@ -390,6 +322,8 @@ def _tecplot(file: BinaryIO) -> str:
     zones = re.findall(rb"(?im)^\s*ZONE\b([^\n]*(?:\n[^\n]*=[^\n]*)*)", data)
     if names is None:
         return "no VARIABLES and ZONE are in it"
+    if data.count(b'"') % 2:
+        return "a name in it has no end, for which VTK's reader waits"
     # Some zones share variables, have some at cells, or repeat numbers.
     if re.search(rb"(?i)\*|VARSHARE|VARLOCATION", data):
         return ""
@@ -508,7 +442,7 @@ def _grib(file: BinaryIO) -> str:
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     ".case": ensight.missing_part, ".vtk": legacy_vtk.missing_part, ".mdpa": _mdpa, ".obj": _obj,
     ".png": _png, ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp, ".trx": _zip,
-    ".vtm": _blocks, **dict.fromkeys((".gz", ".mgz"), _gzip),
+    ".vtm": vtk_xml.missing_block, **dict.fromkeys((".gz", ".mgz"), _gzip),
     **dict.fromkeys((".hdf", ".vtkhdf"), _vtkhdf),
     **dict.fromkeys((".glb", ".gltf"), gltf.missing_part),
     **dict.fromkeys((".avs", ".inp"), _avs),
@@ -517,8 +451,8 @@ _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     **dict.fromkeys((".mha", ".mhd"), _meta),
     **dict.fromkeys((".pnm", ".pgm", ".ppm"), _pnm),
     **dict.fromkeys((".dat", ".tec"), _tecplot),
-    **dict.fromkeys((*_INDICES[1:], ".vtp", ".vtu"), _xml),
-    **dict.fromkeys((".vti", ".vtr", ".vts"), _grid),
+    **dict.fromkeys((*_INDICES[1:], ".vtp", ".vtu"), vtk_xml.missing_part),
+    **dict.fromkeys((".vti", ".vtr", ".vts"), vtk_xml.missing_piece),
     **dict.fromkeys((".nc", ".nc4", ".cdf"), _netcdf),
     **dict.fromkeys((".e", ".ex2", ".exo", ".exii"), _exodus),
 }  # fmt: skip
