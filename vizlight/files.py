@@ -575,6 +575,9 @@ _WAYS: dict[tuple[str, ...], str] = {
     (".txt", ".xlsx", ".parquet", ".npy", ".npz"):
         "read its columns by NumPy or pandas, and look at a mesh of them: "
         "mesh = pyvista.PolyData(rows of x, y, z), mesh['name'] = values",
+    (".fits", ".fit", ".fts"):
+        "read its array by astropy, and look at an image of it: "
+        "mesh = pyvista.ImageData(dimensions=(nx, ny, nz)), mesh['name'] = values.ravel()",
     (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",
     (".step", ".stp", ".iges", ".igs", ".brep"):
         "gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{name}' -o '{stem}.stl'",
@@ -582,8 +585,8 @@ _WAYS: dict[tuple[str, ...], str] = {
         "Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'",
 }  # fmt: skip
 _USUAL_WAY = (
-    "convert it to .ply, .obj, .stl, .vtu or .glb, or save its points as .vtp by "
-    "pyvista.PolyData(points, faces).save(...)"
+    "convert it to .vtu, .vti, .ply, .stl, .glb, .tif or .nc, or save a mesh of its numbers by "
+    "PyVista: PolyData(points, faces) of a surface, ImageData of an image or a volume"
 )
 
 

@@ -273,3 +273,12 @@ def test_segments_of_a_file_of_labels_have_their_names_and_colours(tmp_path):
     assert meaning.flags(mesh, "segment", "colors") == {2: "#ff8000", 7: "#0000ff"}
     look = vizlight.look(path)
     assert look.drawing.keys[0]["cmap"].arguments[0] == {2: "left lung", 7: "heart"}
+
+
+def test_a_slice_of_a_scan_is_gray_and_no_map(tmp_path):
+    rows = np.add.outer(np.arange(30.0), np.arange(20.0))[..., np.newaxis]
+    nibabel.save(nibabel.Nifti1Image(rows.astype(np.float32), np.eye(4)), tmp_path / "a.nii")
+    look = vizlight.look(tmp_path / "a.nii", size=(90, 60))
+    assert (look.shown, look.drawing.keys[0]["cmap"]) == ("sheet", "gray")
+    assert "frame" not in look.script()
+    assert "isolines" not in look.script()

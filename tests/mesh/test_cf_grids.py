@@ -570,3 +570,20 @@ def test_fake_places_are_left_out_for_true_ones():
         },
     )
     assert vizlight.read(data).bounds_size[:2] == pytest.approx((80 + 80 / 9, 80.0))
+
+
+@pytest.mark.parametrize(
+    ("unit", "ticks", "given", "shown"),
+    [("hPa", [1000, 500], {}, "1000 hPa"), ("Pa", [1e5, 5e4], {"lev": 5e4}, "500 hPa"),
+     ("m", [10.0, 80.0], {"lev": 80.0}, "80 m"), ("1", [1.0, 2.0], {"lev": 2.0}, "")],
+)  # fmt: skip
+def test_the_title_has_the_level_of_a_single_layer(unit, ticks, given, shown):
+    words = {"axis": "Z", "units": unit} | ({"positive": "up"} if unit == "m" else {})
+    coords = {"lev": ("lev", np.array(ticks, float), words),
+              "lat": ("lat", LAT, {"units": "degrees_north"}),
+              "lon": ("lon", LON, {"units": "degrees_east"})}  # fmt: skip
+    values = np.stack([HEIGHTS, HEIGHTS + 3])
+    data = xr.Dataset({"t": (("lev", "lat", "lon"), values, {"units": "K"})}, coords)
+    look = vizlight.look(data, size=(90, 60), at=given)
+    level = f" at {shown}" if shown else ""
+    assert look.drawing.keys[0]["title"].startswith(f"t{level} (K)")

@@ -153,6 +153,15 @@ def test_a_picture_of_a_camera_is_no_relief(tmp_path):
     }
 
 
+@pytest.mark.parametrize(
+    ("name", "rows"), [("scene_B4", HEIGHTS), ("ndvi_2020", HEIGHTS / 1e4), ("a", HEIGHTS * 40)]
+)
+def test_a_band_of_a_satellite_is_no_relief(tmp_path, name, rows):
+    kind = np.float32 if name.startswith("ndvi") else np.uint16
+    look = vizlight.look(written(tmp_path / f"{name}.tif", rows.astype(kind)[None]))
+    assert (look.question, look.array) == ("none", name)
+
+
 def test_a_band_beside_colours_has_its_own_unit(tmp_path):
     path = written(tmp_path / "a.tif", np.arange(120, dtype=np.uint8).reshape(4, 5, 6))
     with rasterio.open(path, "r+") as file:

@@ -187,14 +187,17 @@ class Command:
 def _check_output(out: Output, *, several: bool) -> None:
     """Check the options of output that need no mesh."""
     from vizlight import _check, files
-    from vizlight.looks.look import FORMATS
+
+    from vizlight.looks.look import FORMATS, MOVIES
 
     _check.color("background", out.background)
     _check.number("line_width", out.line_width, low=0.1, high=1000.0)
     for path in out.output or ():
         if several and not path.is_dir():
             expected = "a folder that exists, for several files or steps"
-            raise files.FileError(message("output", expected, f"'{path}'"))
+            is_movie = path.suffix.lower() in MOVIES
+            remedy = "a movie shows all steps of a series without --times" if is_movie else ""
+            raise files.FileError(message("output", expected, f"'{path}'", remedy))
         if not path.is_dir():
             files.check_output(path, FORMATS)
     if out.paraview and several:

@@ -655,7 +655,16 @@ class _Reader:
         index = int(heights.argmax() if sea else heights.argmin())
         if (note := f"{dim} {ticks[index] + 0.0:g}") not in self.said.notes:
             self.said.notes.append(note)
+            self._say_level(dim, index)
         return index
+
+    def _say_level(self, dim: str, index: int) -> None:
+        """Say at which height, depth or pressure a single layer is, if its axis has a unit."""
+        along = self._coordinate(dim)
+        if self.letters[dim][0] == "z" and along is not None and along.dtype.kind in "iuf":
+            ticks: Array = np.array(along.values, dtype=np.float64)
+            heights, words = _up(str(along.name), along.attrs, ticks, "")
+            self.said.level = meaning.level(words, float(heights[index]))
 
     def _note_first(self, dims: Sequence[str]) -> None:
         """Note that the first value along some axes is taken."""
@@ -764,6 +773,7 @@ class _Reader:
                 found = [tick if isinstance(tick, int | float) else np.nan for tick in ticks]
                 result[name] = series.chosen(found, value, f"at, along {name}")
             self.said.notes.append(f"{name} {texts[result[name]]}")
+            self._say_level(name, result[name])
         return result
 
     def _fields(self, single: dict[str, int]) -> dict[str, Foreign]:

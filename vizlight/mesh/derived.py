@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -287,7 +288,15 @@ def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.Structured
             into[name] = np.array(data[name][number * count : (number + 1) * count])
     for name in mesh.field_data:
         layer.field_data[name] = mesh.field_data[name]
+    said = meaning.of(mesh)
+    if len(said.axes) > 2 and (text := meaning.level(said.axes[2], _middle(layer))):
+        meaning.attach(layer, dataclasses.replace(said, level=text))
     return layer
+
+
+def _middle(layer: pv.DataSet) -> float:
+    """Return the mean height of a layer."""
+    return float(np.nanmean(np.asarray(layer.points, dtype=np.float64)[:, 2]))
 
 
 def _faces_at(mesh: pv.UnstructuredGrid, levels: Array, at: int) -> pv.PolyData:

@@ -60,6 +60,8 @@ class Meaning:
         is not the usual one.
     span : list of float
         Begin and end of the time that the step stands for, none where the file does not say them.
+    level : str
+        Height, depth or pressure of a single layer, such as "500 hPa"; empty where none is known.
     """
 
     axes: list[str] = field(default_factory=list)
@@ -67,6 +69,7 @@ class Meaning:
     notes: list[str] = field(default_factory=list)
     time: str = ""
     span: list[float] = field(default_factory=list)
+    level: str = ""
 
     def add_array(self, name: str, attributes: Foreign) -> None:
         """Keep what the attributes of an array say."""
@@ -131,6 +134,14 @@ def flags(mesh: pv.DataSet, name: str, key: str = "flags") -> dict[float, str]:
     """
     words = [word.partition(":") for word in of(mesh).arrays.get(name, {}).get(key, "").split()]
     return {float(number): text.replace("_", " ") for number, _, text in words}
+
+
+def level(words: str, height: float) -> str:
+    """Return the height, depth or pressure of a layer with its unit, by the words for its axis."""
+    unit = re.search(r" in (hPa|m)\b", words)
+    size = abs(height)
+    number = f"{size:.4g}" if size < 1e4 else f"{size:.0f}"
+    return f"{number} {unit[1]}" if unit else ""
 
 
 def attach(mesh: pv.DataSet, meaning: Meaning) -> None:

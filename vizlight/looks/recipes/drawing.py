@@ -302,7 +302,13 @@ class Case:
     @cached_property
     def map_frame(self) -> Step | None:
         """Step that makes the frame of a map, None for other data and for a map seen at a slant."""
-        return map_parts.frame(self.data, self.wishes, self._up) if self._is_above else None
+        is_map = self._is_above and not self.is_of_body
+        return map_parts.frame(self.data, self.wishes, self._up) if is_map else None
+
+    @property
+    def is_of_body(self) -> bool:
+        """Whether a file says that axes are those of a body."""
+        return meaning.ways(self.data.run()) == (*meaning.ANATOMY.values(),)
 
     @property
     def frame(self) -> Step | None:
@@ -584,6 +590,8 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | 
     unit = "" if unit == "1" else meaning.written(unit)
     if level is not None:
         title = f"{title} = {levels.number(level)} {unit}".rstrip()
+    if text := meaning.of(mesh).level:
+        title += f" at {text}"
     if series.TIME in mesh.field_data:
         date = _dated(mesh, attributes.get("cell_methods", ""))
         title += f", {date}" * bool(date)

@@ -73,7 +73,8 @@ def values(case: Case) -> Drawing:
         keywords, note = case.ranged(rows, array.name, ON_SURFACES, lengths=False)
     elif not bent:
         # Nothing is lit: the map may run in lightness, which shows more than hues alone.
-        keywords, note = case.ranged_of(mesh, array, LIGHTNESS, amounts=case.is_of_earth)
+        cmap = "gray" if case.is_of_body else LIGHTNESS
+        keywords, note = case.ranged_of(mesh, array, cmap, amounts=case.is_of_earth)
     if array.role == "kinds":
         keywords = colors_of_kinds(mesh, array, case.wishes.colors)
     elif array.role == "colors":
