@@ -187,7 +187,6 @@ class Command:
 def _check_output(out: Output, *, several: bool) -> None:
     """Check the options of output that need no mesh."""
     from vizlight import _check, files
-
     from vizlight.looks.look import FORMATS, MOVIES
 
     _check.color("background", out.background)
