@@ -34,7 +34,7 @@ def test_names_of_arrays_are_one_line(tmp_path):
     path = tmp_path / "a.cube"
     path.write_text(head + "1 2\n3 4\n5 6\n7 8\n")
     mesh = files.read(path)
-    assert mesh.array_names == [mesh.active_scalars_name] == ["Density of helium"]
+    assert list(mesh.point_data) == [mesh.active_scalars_name] == ["Density of helium"]
     assert sorted(mesh["Density of helium"]) == [1, 2, 3, 4, 5, 6, 7, 8]
 
 

@@ -144,3 +144,17 @@ def test_a_scan_of_a_body_shows_bones_or_slices_but_no_skin():
     assert "bone" in str(bones)
     slices = vizlight.look(scan((99, -1000), (13, 40), (8, 900)), "value")
     assert (slices.shown, slices.drawing.keys[0]["cmap"]) == ("slices", "gray")
+
+
+def test_both_signs_of_an_orbital_are_shown():
+    grid = pv.ImageData(dimensions=(25, 25, 25), origin=(-12.0,) * 3)
+    x, y, z = grid.points.T
+    grid["psi"] = x * np.exp(-np.sqrt(x * x + y * y + z * z) / 2)
+    look = vizlight.look(grid)
+    (key,) = look.drawing.keys
+    level = key["levels"][2]
+    assert f"isosurface psi = ±{level:.4g}" in look.summary
+    assert key["title"] == f"Psi = ±{level:.4g}"
+    np.testing.assert_allclose(np.unique(look.mesh["psi"]), [-level, level], rtol=1e-6)
+    grid["psi"] = np.abs(grid["psi"])
+    assert "±" not in vizlight.look(grid).summary

@@ -218,7 +218,7 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     rows = nibabel.apply_orientation(rows, turn)
     counts = rows.shape[:3]
     affine = affine @ nibabel.orientations.inv_ornt_aff(turn, shape[:3] + (1,) * (3 - len(shape)))
-    grid = _of_affine(affine, counts)
+    grid = of_affine(affine, counts)
     kind = np.float32 if rows.dtype == np.float16 else rows.dtype.newbyteorder("=")
     flat = np.ascontiguousarray(rows, dtype=kind).reshape(-1, *rows.shape[3:], order="F")
     name = FORMATS.get(path.suffix.lower(), "NIFTI")
@@ -232,7 +232,7 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     return grid if steps < 2 else series.marked(grid, times, index)
 
 
-def _of_affine(affine: AnyArray, counts: Sequence[int]) -> pv.ImageData | pv.StructuredGrid:
+def of_affine(affine: AnyArray, counts: Sequence[int]) -> pv.ImageData | pv.StructuredGrid:
     """Return a grid with its point i, j, k at the affine times these."""
     spacing = np.linalg.norm(affine[:3, :3], axis=0)
     axes = affine[:3, :3] / np.where(spacing > 0, spacing, 1)

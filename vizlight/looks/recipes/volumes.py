@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from vizlight.draw.margins import parted
 from vizlight.looks import levels
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import eye_around
 from vizlight.looks.recipes import fields, surfaces
 from vizlight.looks.recipes.drawing import LIGHTNESS, Doubt, Drawing, Layer, range_of
 from vizlight.looks.steps import Step
+from vizlight.maps import TWO_SIDED
 from vizlight.mesh import meaning
 from vizlight.vtk.normals import piece_numbers
 
@@ -32,6 +34,9 @@ AIR, BONE, NEAR_AIR, MUCH_AIR, BONES = -1000.0, 300.0, 50.0, 0.05, (0.002, 0.3)
 #: Share of a scan that has its lowest value from which on an organ was cut out of it, and the
 #: number of values that are looked at.
 CUT_OUT, SAMPLE = 0.5, 100_000
+#: Share of values that are below half of a level from which others are lobes in empty space, and
+#: the colours of those below and above 0.
+EMPTY, LOBES = 0.5, ["#4169cf", "#d63a3a"]
 #: Share of its range through which a second array runs on an isosurface that shows it.
 LEAST_SPREAD = 0.02
 #: Most pieces of an isosurface, where none has this share of it.
@@ -72,6 +77,10 @@ def isosurface(case: Case) -> Drawing:
     part = dict(case.wishes.part) | {"contour": array.name, "level": level}
     closed = _closed(case.data, array.name, level) if notes else case.data
     mesh = replace(case.wishes, part=part).isosurface(closed)
+    ends = (-abs(level), abs(level))
+    has_lobes = case.wishes.question == "auto" and _has_lobes(case, array, level)
+    if has_lobes:
+        mesh = Step("surface", ".contour", case.data, [*ends], scalars=array.name)
     if case.wishes.question == "auto" and _is_crumbs(mesh.run()):
         return slices(whole, "; isosurfaces are crumbs")
     contents = Contents(mesh.run())
@@ -85,6 +94,9 @@ def isosurface(case: Case) -> Drawing:
         wishes = replace(wishes, frame=frame)
     words = f"isosurface {array.name} = {levels.number(level)}"
     second = _second(case, mesh.run())
+    if has_lobes:
+        words, second = f"isosurface {array.name} = ±{levels.number(ends[1])}", array
+        wishes = replace(wishes, picture={"cmap": LOBES, "clim": ends} | dict(wishes.picture))
     case = replace(case, data=mesh, contents=contents, wishes=wishes)
     if second is None or case.wishes.question == "shape":
         figure = "shape"
@@ -92,13 +104,27 @@ def isosurface(case: Case) -> Drawing:
     else:
         figure = "value"
         drawing = surfaces.values(replace(case, question="value", array=second))
-        words += f" in the colours of {second.name}"
+        words += "" if has_lobes else f" in the colours of {second.name}"
+    if has_lobes:
+        title, unit = parted(str(drawing.keys[0]["title"]))
+        title = f"{title} = ±{levels.number(ends[1])} {unit}".rstrip()
+        key = drawing.keys[0] | {"title": title, "levels": [ends[0], 0.0, ends[1]]}
+        drawing = replace(drawing, keys=[key])
     drawing = replace(drawing, words=words, notes=[*drawing.notes, *notes])
     if wishes.question == "auto" and _is_rough(case, mesh, drawing.camera):
         drawing = replace(drawing, doubt=Doubt((figure,), lambda: slices(whole)))
     if notes or not around:
         return drawing
     return replace(drawing, layers=[*drawing.layers, *whole.boxed(box, drawing.camera)])
+
+
+def _has_lobes(case: Case, array: Named, level: float) -> bool:
+    """Return whether values are as far below 0 as above it, as an orbital's, and near it mostly."""
+    values = _sample(case, array)
+    if array.of_cells or not len(values):
+        return False
+    low, high = sorted((-float(values.min()), float(values.max())))
+    return low >= TWO_SIDED * high > 0 and float(np.mean(np.abs(values) < abs(level) / 2)) > EMPTY
 
 
 def _closed(image: Step, name: str, level: float) -> Step:

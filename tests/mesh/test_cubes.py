@@ -1,0 +1,55 @@
+"""Cube files: values at their places in angstroms."""
+
+import numpy as np
+import pytest
+
+import vizlight
+from vizlight.files import FileError
+from vizlight.mesh import meaning
+from vizlight.mesh.cubes import BOHR
+
+#: Values 0 to 23 of a grid of 2 x 3 x 4 points, the last index fastest.
+VALUES = " ".join(map(str, range(24)))
+
+
+def written(folder, counts=(2, 3, 4), atoms=1, values=VALUES, orbitals=""):
+    sides = np.diag([0.5, 1.0, 2.0])
+    axes = [
+        f"{count} {' '.join(map(str, side))}" for count, side in zip(counts, sides, strict=True)
+    ]
+    path = folder / "psi.cube"
+    lines = [
+        "water",
+        "OUTER LOOP: X, MIDDLE LOOP: Y, INNER LOOP: Z",
+        f"{atoms} 1.0 2.0 3.0",
+        *axes,
+        "8 8.0 0.0 0.0 0.0",
+        orbitals,
+        values,
+    ]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def test_values_are_at_their_places_in_angstroms(tmp_path):
+    mesh = vizlight.read(written(tmp_path))
+    point = mesh.find_closest_point(BOHR * np.array([1.5, 3.0, 9.0]))
+    np.testing.assert_allclose(mesh.points[point], BOHR * np.array([1.5, 3.0, 9.0]))
+    assert mesh["psi"][point] == 12 + 4 + 3
+    # Negative numbers of points are those of angstroms.
+    plain = vizlight.read(written(tmp_path, counts=(-2, -3, -4)))
+    np.testing.assert_allclose(plain.points, mesh.points / BOHR)
+    np.testing.assert_array_equal(plain["psi"], mesh["psi"])
+
+
+def test_orbitals_are_arrays_of_their_numbers(tmp_path):
+    values = " ".join(map(str, range(48)))
+    mesh = vizlight.read(written(tmp_path, atoms=-1, values=values, orbitals="2 5 6"))
+    assert meaning.line(mesh) == "x in angstroms, y, z, 1 atoms are left out"
+    assert mesh["orbital 5"].max() == 46
+    np.testing.assert_array_equal(mesh["orbital 6"], mesh["orbital 5"] + 1)
+
+
+def test_a_cube_that_is_cut_short_is_refused(tmp_path):
+    with pytest.raises(FileError, match="23 of 24 values are there"):
+        vizlight.read(written(tmp_path, values=VALUES[:-3]))
