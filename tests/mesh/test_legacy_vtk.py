@@ -43,6 +43,10 @@ WRONG = {
     "version": (cells(3, 0, 1, 2).replace(b" 4.2", b""), "corners of 2 cells are not 4"),
     "no cells": (cells(3, 0, 1, 2).replace(b"2 4", b"2 400"), "4 of 400 numbers of cells"),
     "bracket": (FIELD.replace(b"1 2 3 4\n", b"1 ] 3 4\n"), "words stand among"),
+    "components": (
+        cells(3, 0, 1, 2, 3, 0, 1, 2) + b"\nPOINT_DATA 4\nSCALARS a float 4294967295\n",
+        "an array has 4294967295 components",
+    ),
     "attribute": (
         cells(3, 0, 1, 2, 3, 0, 1, 2) + b"\nPOINT_DATA 4\nF\xffELD a 1\n",
         "stands where an array begins",

@@ -111,6 +111,7 @@ WRONG = {
         b'<GIFTI NumberOfDataArrays="2"><DataArray Dimensionality="1"/></GIFTI>',
         "1 of 2 arrays are there",
     ),
+    "counts": ("a.avs", AVS[10:], "its first line is no five counts"),
     "no line": ("a.avs", AVS[:30], "4 of 5 lines of points and cells"),
     "no corner": ("a.avs", AVS[:-10], "a cell is not whole"),
     "message": ("a.grib", GRIB1 + GRIB2[:-9], "message 2 does not end where its length of 40"),

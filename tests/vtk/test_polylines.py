@@ -80,6 +80,13 @@ def test_odd_lines_get_a_defined_light():
     np.testing.assert_allclose(lit["luminance"][[3, 4]], 0.1)
 
 
+def test_segments_from_a_point_to_itself():
+    """They end VTK's filter, and are no part of the line of the others."""
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]])
+    mesh = pv.PolyData(points, lines=[2, 0, 1, 2, 1, 1, 2, 1, 2, 2, 2, 2])
+    np.testing.assert_allclose(polylines.line_tangents(mesh), [[1, 0, 0]] * 3)
+
+
 def test_a_mesh_with_faces_is_no_mesh_of_lines():
     both = pv.Plane().append_polydata(pv.Line((0, 0, 1), (1, 0, 1)))
     assert both.n_lines

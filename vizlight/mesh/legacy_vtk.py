@@ -46,6 +46,8 @@ _TYPES = re.compile(rb"\n\w+[ \t]+(\d+)[ \t]*\r?\n")
 #: The first word after a number of points or cells, and the number of arrays of a field.
 _FIRST = re.compile(rb"\n\w+[ \t]+\d+\s+(\S+)")
 _FIELD = re.compile(rb"\sFIELD[ \t]+\S+\s+(\d+)(?=\s)")
+#: Header of an array of some components.
+_SCALARS = re.compile(rb"\nSCALARS[ \t]+\S+[ \t]+\w+[ \t]+(\d+)[ \t]*\r?\n")
 #: Header of an array of a field in a legacy file, with what VTK knows of the array before it.
 _ARRAY = re.compile(
     rb"(?:\s*METADATA\b.*?\n\r?\n)?\s*\S+\s+(\d+)\s+(\d+)\s+(\w+)[^\n]*\n", re.DOTALL
@@ -81,7 +83,8 @@ def missing_part(file: BinaryIO) -> str:
             for word in (b"\nPOINT_DATA ", b"\nCELL_DATA ")
             for at in file_parts.places(data, word)
         )
-        return next(filter(None, itertools.chain(fields, cells, types, named)), "")
+        wide = (_components(data, at) for at in file_parts.places(data, b"\nSCALARS "))
+        return next(filter(None, itertools.chain(fields, cells, types, named, wide)), "")
 
 
 def _named(data: mmap.mmap | bytes, at: int) -> str:
@@ -90,6 +93,14 @@ def _named(data: mmap.mmap | bytes, at: int) -> str:
     if word is None or word[1].upper() in _ATTRIBUTES:
         return ""
     return f"{word[1][:20]!r} stands where an array begins"
+
+
+def _components(data: mmap.mmap | bytes, at: int) -> str:
+    """Return the reason why an array has a number of components for which VTK leaves it out."""
+    head = _SCALARS.match(data, at)
+    if head is None or 0 < int(head[1]) < len(data):
+        return ""
+    return f"an array has {int(head[1])} components"
 
 
 def _numbers(data: mmap.mmap | bytes, at: int, count: int, is_text: bool, size: int = 4) -> Indices:

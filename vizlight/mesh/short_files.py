@@ -376,10 +376,13 @@ _AXES = [b"%d" % number for number in range(1, 7)]
 
 def _avs(file: BinaryIO) -> str:
     """Count the lines of points and cells of AVS, whose header states both."""
-    lines = [line for line in file.read().splitlines() if not line.lstrip().startswith(b"#")]
+    data = file.read()
+    if data.lstrip()[:1] in (b"*", b"\7"):
+        return ""  # a file of Abaqus, or a binary one
+    lines = [line for line in data.splitlines() if not line.lstrip().startswith(b"#")]
     words = lines[0].split() if lines else []
     if len(words) != 5 or not all(map(bytes.isdigit, words)):
-        return ""  # a file of Abaqus, or meshio says so
+        return "its first line is no five counts, as that of AVS is"
     least = 1 + int(words[0]) + int(words[1])
     if len(lines) < least:
         return f"{len(lines)} of {least} lines of points and cells are there"

@@ -108,6 +108,14 @@ def _joined(mesh: vtkPolyData) -> tuple[Array, Indices, Indices]:
     """Return points, connectivity and offsets of polylines, consecutive segments joined."""
     lines = mesh.GetLines()
     ids, offsets = connectivity(lines)
+    sizes = np.diff(offsets)
+    pairs = np.flatnonzero(sizes == 2)
+    # At a segment from a point to itself VTK's filter ends the process.
+    if (empty := pairs[ids[offsets[pairs]] == ids[offsets[pairs] + 1]]).size:
+        ids = np.delete(ids, np.add.outer(offsets[empty], [0, 1]))
+        offsets = np.concatenate([[0], np.cumsum(np.delete(sizes, empty))])
+        lines = vtkCellArray()
+        lines.SetData(as_vtk(offsets), as_vtk(ids))
     # Segments that have an end in common.
     if np.any(np.diff(offsets) == 2) and np.bincount(ids).max() > 1:
         # Lines alone: the filter would also make strips of triangles.
