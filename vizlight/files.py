@@ -134,16 +134,17 @@ def read(
     """Read a mesh from a file, in this process: a file that is damaged on purpose may end it.
 
     These are files that PyVista reads, tractograms, rasters, netCDF grids, molecules and crystals
-    (.pdb, .cif, .xyz), maps of densities (.mrc, .ccp4), and tables (.csv) of points that name columns of places in their first line: x, y, z or lon, lat.
+    (.pdb, .cif, .xyz), maps of densities (.mrc, .ccp4), and tables (.csv) of points that name
+    columns of places in their first line: x, y, z or lon, lat.
 
     Parameters
     ----------
     path : path, xarray.Dataset or xarray.DataArray
         Path of the file, or data of xarray, of which one step is loaded. Tractograms (.trk, .tck,
         .trx) need the extra ``tracts``; netCDF files (.nc, .cdf), .cif, .mrc and those that
-        PyVista reads by meshio, such as .mesh and .msh, need the extra ``formats``; GeoTIFF and other rasters
-        (.tif, .asc, .hgt) the extra ``maps``; GRIB (.grib, .grb) cfgrib and Zarr (.zarr) zarr
-        beside ``formats``.
+        PyVista reads by meshio, such as .mesh and .msh, need the extra ``formats``; GeoTIFF and
+        other rasters (.tif, .asc, .hgt) the extra ``maps``; GRIB (.grib, .grb) cfgrib and Zarr
+        (.zarr) zarr beside ``formats``.
     time : float or "first" or "last", optional
         Time of the step that is read from a file of several, or the index of the step, if it is
         an integer and no time of a step. Default: the last step.
