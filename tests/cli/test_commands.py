@@ -283,7 +283,7 @@ def lit(done, words, path="lit.vtp", name="luminance"):
 def test_the_key_of_colours_names_what_they_are(folder, monkeypatch, done):
     terrain = pv.read("terrain.vti")
     terrain["paint"] = np.zeros((terrain.n_points, 3), np.uint8)
-    terrain["warmth"] = 3.0 * terrain["height"]
+    terrain["warmth"] = 30.0 + 3.0 * terrain["height"]
     terrain.save("terrain.vti")
     made, key = [], component.key
     monkeypatch.setattr(component, "key", lambda *a, **k: made.append(key(*a, **k)) or made[-1])
