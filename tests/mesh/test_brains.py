@@ -75,7 +75,9 @@ def test_values_alone_say_how_they_are_given(name, tmp_path):
         nibabel.freesurfer.write_annot(path, values.astype(np.int32), colors, names, False)
     else:
         kind = nibabel.Nifti1Image if ".nii" in name else nibabel.MGHImage
-        nibabel.save(kind(values.reshape(-1, 1, 1), np.eye(4)), path)
+        # Their axis is the first of NIfTI, and may be any of MGH.
+        shape = (-1, 1, 1) if name.endswith(".gz") else (1, 1, -1)
+        nibabel.save(kind(values.reshape(shape), np.eye(4)), path)
     with pytest.raises(files.FileError, match="read the surface, and pass this file as overlay="):
         vizlight.read(path)
     BALL.save(tmp_path / "lh.vtp")

@@ -210,7 +210,7 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     rows = rows.reshape(*rows.shape, *[1] * (3 - rows.ndim))
     if rows.ndim not in (3, 4) or rows.dtype.kind not in "biuf":
         raise ValueError(f"{rows.dtype} numbers of shape {rows.shape} are no volume")
-    if rows.shape[1:3] == (1, 1) and len(rows) > 1:
+    if np.count_nonzero(np.array(rows.shape[:3]) > 1) == 1:
         raise ValueError(NO_SURFACE)
     # Axes of the storage that run to the left, to the back or down are turned over, and put in
     # order, with their values: the places stay.

@@ -327,7 +327,8 @@ def _joined(elements: Sequence[str], places: Sequence[Sequence[float]]) -> pv.Po
     pairs = pairs[~_are_bridged(pairs, of_atoms)]
     lines = np.insert(pairs, 0, 2, axis=1).ravel()
     alone = np.setdiff1d(np.arange(len(places)), pairs)
-    if len(alone) > len(places) / 2:
+    no_metal = np.isin(of_atoms, NO_METALS)
+    if np.count_nonzero(no_metal[alone]) > np.count_nonzero(no_metal) / 2:
         # Beads of a coarse model, or one atom of each residue, that meet by chance.
         alone, lines = np.arange(len(places)), lines[:0]
     mesh = pv.PolyData(
