@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -41,7 +42,7 @@ FINEST, COARSEST, UNSAID = 2.0, 16.0, 4.0
 #: measured, and the largest difference that counts.
 BYTES, EDGE = 1.6, 32.0
 #: Colours up to which those of three channels are faces in SVG files, and plates above.
-FEW = 32
+FEW = 128
 #: Error that would be needed above which no coarser figure is tried.
 HOPELESS = 24.0
 #: Power of the error to which the size falls, as measured, and share of the largest size that is
@@ -245,12 +246,12 @@ def _rgb(color: Array) -> Color:
 
 def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt, *, plates: bool) -> _Attempt:
     """Return the most accurate figure that is not too large, from a first attempt."""
-    best = None
+    best, power = None, POWER
     for _ in range(4):
         size = len(attempt.data)
         if size <= LARGEST and (best is None or attempt.asked < best.asked):
             best = attempt
-        error = attempt.asked * (size / (AIM * LARGEST)) ** (1 / POWER)
+        error = attempt.asked * (size / (AIM * LARGEST)) ** (1 / power)
         if error > HOPELESS:
             break
         error = float(np.clip(error, FINEST, COARSEST))
@@ -260,7 +261,11 @@ def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt, *, plates: bool) -> 
             return best
         if attempt.asked == COARSEST:
             break
-        attempt = drawn.attempt(suffix, error, plates=plates)
+        before, attempt = attempt, drawn.attempt(suffix, error, plates=plates)
+        if attempt.asked > before.asked:
+            # Sizes of noise fall more slowly: two of them tell how, and whether any error helps.
+            fall = math.log(size / len(attempt.data)) / math.log(attempt.asked / before.asked)
+            power = float(np.clip(fall, POWER / 8, POWER))
     if best is not None:
         return best
     # Pixels in place of faces help nothing where it is the strokes that are many.
