@@ -722,6 +722,18 @@ def test_lines_alone_stand_before_black(mesh, colour, tmp_path):
     assert scene_in(path)[2]["background"] == colour
 
 
+def test_the_bar_of_kinds_has_their_names(tmp_path):
+    mesh = pv.Sphere()
+    mesh["chain"] = (mesh.points[:, 2] > 0).astype(float)
+    plotter = pv.Plotter(off_screen=True)
+    for names in ({0: "A", 1: "<b>"}, {}):
+        table = vizlight.maps.kinds(names or [0, 1])
+        plotter.vizlight.add_mesh(mesh, scalars="chain", cmap=table, name="one")
+        plotter.vizlight.export_html(tmp_path / "a.html")
+        (bar,) = scene_in(tmp_path / "a.html")[2]["bars"]
+        assert bar["numbers"] == ([*names.values()] or ["0", "1"])
+
+
 @pytest.mark.filterwarnings("ignore:.*could not be lit")
 def test_what_is_not_data_is_grey_and_has_a_name(opened, tmp_path):
     camera = vizlight.render.camera_on((-0.5, 0.5, -0.5, 0.5, 0, 0), (0, 0, 1), parallel=True)

@@ -30,7 +30,7 @@ from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
 from vizlight.draw.strokes import DEPTH
 from vizlight.files import check_output, replace_file
 from vizlight.filters import relight
-from vizlight.filters.key import preset_of
+from vizlight.filters.key import annotated, preset_of
 from vizlight.mesh import blocks, records, strokes
 from vizlight.mesh.polylines import backdrop
 from vizlight.model import kernels
@@ -544,7 +544,7 @@ def _directions(rows: Array, linear: Array) -> dict[str, object]:
 
 
 def _bar(title: str, table: pv.LookupTable) -> dict[str, object]:
-    """Return a scalar bar: its colours from left to right, and three numbers, or those of kinds."""
+    """Return a scalar bar: its colours from left to right, and three numbers, or names of kinds."""
     low, high = table.GetTableRange()
     logarithmic = bool(table.GetScale())
     # Halfway along a logarithmic bar is the geometric mean.
@@ -563,7 +563,10 @@ def _bar(title: str, table: pv.LookupTable) -> dict[str, object]:
             for color, (a, b) in zip(colors, itertools.pairwise(ends), strict=True)
         ]
         if count == high - low and low % 1 == 0.5:
-            numbers = tuple(low + 0.5 + i for i in range(count))
+            kinds = [low + 0.5 + i for i in range(count)]
+            names = dict(annotated(table))
+            words = [names.get(*each) for each in zip(kinds, numerals(kinds), strict=True)]
+            return {"title": title, "colors": colors, "numbers": words}
     return {"title": title, "colors": colors, "numbers": numerals(numbers)}
 
 

@@ -201,10 +201,10 @@ def _put_words(mesh: pv.PolyData, name: str, words: Sequence[str]) -> None:
 
 def _names_of(cmap: ColorMap) -> list[str]:
     """Return the names of the kinds of a lookup table, in the order of their numbers."""
-    return [name for _, name in _annotated(cmap)]
+    return [name for _, name in annotated(cmap)]
 
 
-def _annotated(cmap: ColorMap) -> list[tuple[float, str]]:
+def annotated(cmap: ColorMap) -> list[tuple[float, str]]:
     """Return the numbers and the names of the kinds of a lookup table, in their order."""
     import pyvista as pv
 
@@ -308,9 +308,9 @@ def colors_of(
     seen = _in_frame_of_eye(scene)
     if form == "colors":
         table = np.asarray(color_table([np.array([0.0, 1.0])], cmap=cmap).values)[:, :3]
-        if _annotated(cmap):
+        if annotated(cmap):
             # One swatch for each kind, whatever the gaps between their numbers.
-            kinds = np.array([number for number, _ in _annotated(cmap)])
+            kinds = np.array([number for number, _ in annotated(cmap)])
             table = table[np.rint(kinds - cmap.scalar_range[0] - 0.5).astype(int)]
         at = np.minimum(((x + 1) / 2 * len(table)).astype(int), len(table) - 1)
         # The bar runs from the least light below to full light above.
