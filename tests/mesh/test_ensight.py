@@ -5,7 +5,7 @@ import pytest
 
 import vizlight
 from vizlight.files import FileError
-from vizlight.mesh import short_files
+from vizlight.mesh import ensight, short_files
 
 #: A tetrahedron, a polygon and a polyhedron of the points of a hexahedron, whose points have ids.
 CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)])
@@ -64,6 +64,7 @@ WRONG = {
     "twice": (CASE[:26] + CASE, GEO, "the section FORMAT stands twice"),
     "section": (CASE[:52], GEO, "no such section as b'VARI'"),
     "variable": (CASE.replace(b"per node", b"per \0"), GEO, "no such variable as"),
+    "geometry": (CASE.replace(b"VARIABLE\n", b""), GEO, "no such geometry as b'vector per el"),
     "missing": (CASE.replace(b"a.geo", b"b.geo"), GEO, "'b.geo', which is missing"),
     "no step": (CASE.replace(b"a.scl", b"b.*"), GEO, r"'b.\*', which is missing"),
     "type": (CASE.replace(b"ght", b"\0\xff"), GEO, "no such type as"),
@@ -118,6 +119,18 @@ def test_a_shift_in_a_binary_file(tmp_path):
     path = written(tmp_path, CASE, geometry(binary=True), binary=True)
     (tmp_path / "a.vec").write_bytes(b"-" + (tmp_path / "a.vec").read_bytes())
     assert short_files.missing_part(path) == "'a.vec': a line has no words"
+
+
+def test_a_case_that_ends_a_process_is_read_by_another(tmp_path):
+    case = CASE.replace(b"s a.scl", b"1 s a.scl")
+    case += b"TIME\ntime set: 1\nnumber of steps: 1\ntime values: 0\n"
+    path = written(tmp_path, case, GEO)
+    assert short_files.missing_part(path) == ""
+    with path.open("rb") as file:
+        names = ("a.case", "a.geo", "a.scl", "a.vec")
+        assert ensight.size(file) == sum((tmp_path / name).stat().st_size for name in names)
+    path = written(tmp_path, case.replace(b"number of steps: 1\n", b""), GEO)
+    assert "VTK's reader of EnSight cannot read it" in short_files.missing_part(path)
 
 
 def test_each_of_several_steps_in_a_file_is_followed(tmp_path):

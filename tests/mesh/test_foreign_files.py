@@ -192,6 +192,15 @@ def test_references_of_points_leave_their_name_to_those_of_cells(tmp_path):
     assert list(mesh.point_data) == ["medit:ref of points"]
 
 
+def test_a_mesh_of_one_dimension(tmp_path):
+    pytest.importorskip("meshio")
+    head = "MeshVersionFormatted 2\nDimension 1\nVertices\n2\n"
+    (tmp_path / "a.mesh").write_text(f"{head}0.0 0\n1.5 1\nEdges\n1\n1 2 0\nEnd\n")
+    mesh = vizlight.read(tmp_path / "a.mesh")
+    np.testing.assert_array_equal(mesh.points, [[0, 0, 0], [1.5, 0, 0]])
+    assert mesh.n_cells == 1
+
+
 def test_an_array_of_meshio_without_rows_for_some_cells_is_left_out(tmp_path):
     pytest.importorskip("meshio")
     path = tmp_path / "a.fem"

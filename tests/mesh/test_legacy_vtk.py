@@ -43,6 +43,14 @@ WRONG = {
     "version": (cells(3, 0, 1, 2).replace(b" 4.2", b""), "corners of 2 cells are not 4"),
     "no cells": (cells(3, 0, 1, 2).replace(b"2 4", b"2 400"), "4 of 400 numbers of cells"),
     "bracket": (FIELD.replace(b"1 2 3 4\n", b"1 ] 3 4\n"), "words stand among"),
+    "no word": (
+        cells(3, 0, 1, 2, 3, 0, 1, 2, text=False).replace(b"\nPOLYGONS", b"\n\0\0\0YGONS"),
+        "no word stands after its points",
+    ),
+    "huge type": (
+        cells(3, 0, 1, 2, 3, 0, 1, 2) + b"\nCELL_TYPES 2\n5 1099511627776\n",
+        "no cells of type 1099511627776",
+    ),
     "components": (
         cells(3, 0, 1, 2, 3, 0, 1, 2) + b"\nPOINT_DATA 4\nSCALARS a float 4294967295\n",
         "an array has 4294967295 components",

@@ -239,6 +239,6 @@ def test_a_damaged_file_of_exodus_is_opened_by_another_process(tmp_path, monkeyp
         child.setattr(_supervise, "has_parent", lambda: True)
         assert short_files.missing_part(path) == ""
     monkeypatch.setattr(short_files, "_EXODUS", "import time; time.sleep(60)")
-    monkeypatch.setattr(short_files, "_EXODUS_SECONDS", 0.2)
+    monkeypatch.setattr(short_files, "_SECONDS", 0.2)
     with pytest.raises(FileError, match="VTK's reader of Exodus does not come to an end"):
         vizlight.read(path)

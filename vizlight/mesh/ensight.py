@@ -23,13 +23,15 @@ if TYPE_CHECKING:
 
     from vizlight._types import Indices, Raw
 
-__all__ = ["missing_part"]
+__all__ = ["missing_part", "size"]
 
 #: Words of a case that stand alone in a line.
 _SECTIONS = (
     b"FORMAT", b"GEOMETRY", b"VARIABLE", b"TIME", b"FILE", b"MATERIAL", b"BLOCK_CONTINUATION",
     b"SCRIPTS",
 )  # fmt: skip
+#: Words before the colon in the section of the geometry; VTK goes round others without end.
+_MODELS = (b"model", b"measured", b"match", b"boundary", b"rigid_body", b"vector_glyphs")
 #: Formats, of which the last one is Gold, and kinds of variables with the words for their places.
 _TYPES = [[b"ensight"], [b"ensight", b"gold"]]
 _KIND = re.compile(
@@ -75,6 +77,8 @@ def missing_part(file: BinaryIO) -> str:
             sections.add(section)
         elif not colon and not _NUMBERS.fullmatch(head):
             return f"no such section as {text[:40]!r}"
+        elif section == b"GEOMETRY" and colon and line.head.lower() not in _MODELS:
+            return f"no such geometry as {text[:40]!r}"
         elif section == b"VARIABLE" and colon and not line.kind:
             return f"no such variable as {text[:40]!r}"
         elif section == b"FORMAT" and line.head == b"type":
@@ -86,6 +90,20 @@ def missing_part(file: BinaryIO) -> str:
                 return f"it names no file in the line {text[:40]!r}"
             named.append(line)
     return _fault_of_files(folder, named, is_gold=form == _TYPES[-1])
+
+
+def size(file: BinaryIO) -> int:
+    """Return the number of bytes of a case and of the files that it names, of their last step.
+
+    Parameters
+    ----------
+    file : file
+        The case, which is open.
+    """
+    file.seek(0)
+    data, folder = file.read(), Path(file.name).parent
+    paths = {_of_last_step(folder, os.fsdecode(word)) for word in data.split() if b"\0" not in word}
+    return len(data) + sum(path.stat().st_size for path in paths if path is not None)
 
 
 class _Entry(NamedTuple):
@@ -128,7 +146,8 @@ def _of_last_step(folder: Path, name: str) -> Path | None:
     """Return the path of a file; stars stand for the digits of a step, and the last one is read."""
     if "*" not in name:
         return folder / name if (folder / name).is_file() else None
-    return max(folder.glob(name.replace("*", "[0-9]")), default=None)
+    path = folder / name
+    return max(path.parent.glob(path.name.replace("*", "[0-9]")), default=None)
 
 
 def _mapped(path: Path) -> mmap.mmap:

@@ -271,6 +271,8 @@ def _of_meshio(path: Path) -> pv.DataSet:
     for name in data.point_data.keys() & data.cell_data.keys():
         # A name stands for one array, and those of cells are the materials.
         data.point_data[f"{name} of points"] = data.point_data.pop(name)
+    # PyVista adds one axis that is missing, and not two.
+    data.points = np.pad(data.points, ((0, 0), (0, max(3 - data.points.shape[1], 0))))
     try:
         mesh = pv.from_meshio(data)
     except KeyError as error:

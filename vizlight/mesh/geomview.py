@@ -104,6 +104,8 @@ def _broken(words: list[bytes], points: int, faces: int, size: int) -> list[list
     if len(ends) <= points + faces or ends[-1] > len(words):
         there = sum(end <= len(words) for end in ends[1:])
         raise ValueError(f"{there} of {points + faces} vertices and faces are there")
+    if more := len(words) - ends[-1]:
+        raise ValueError(f"{more} numbers are in no vertex or face")
     return [words[start:end] for start, end in itertools.pairwise(ends)]
 
 

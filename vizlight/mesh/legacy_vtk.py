@@ -46,7 +46,8 @@ _TYPES = re.compile(rb"\n\w+[ \t]+(\d+)[ \t]*\r?\n")
 #: The first word after a number of points or cells, and the number of arrays of a field.
 _FIRST = re.compile(rb"\n\w+[ \t]+\d+\s+(\S+)")
 _FIELD = re.compile(rb"\sFIELD[ \t]+\S+\s+(\d+)(?=\s)")
-#: Header of an array of some components.
+#: Headers of points, and of an array of some components.
+_POINTS = re.compile(rb"\nPOINTS[ \t]+(\d+)[ \t]+(\w+)[ \t]*\r?\n")
 _SCALARS = re.compile(rb"\nSCALARS[ \t]+\S+[ \t]+\w+[ \t]+(\d+)[ \t]*\r?\n")
 #: Header of an array of a field in a legacy file, with what VTK knows of the array before it.
 _ARRAY = re.compile(
@@ -84,7 +85,8 @@ def missing_part(file: BinaryIO) -> str:
             for at in file_parts.places(data, word)
         )
         wide = (_components(data, at) for at in file_parts.places(data, b"\nSCALARS "))
-        return next(filter(None, itertools.chain(fields, cells, types, named, wide)), "")
+        ends = (_after_points(data, at, is_text) for at in file_parts.places(data, b"\nPOINTS "))
+        return next(filter(None, itertools.chain(fields, ends, cells, types, named, wide)), "")
 
 
 def _named(data: mmap.mmap | bytes, at: int) -> str:
@@ -93,6 +95,18 @@ def _named(data: mmap.mmap | bytes, at: int) -> str:
     if word is None or word[1].upper() in _ATTRIBUTES:
         return ""
     return f"{word[1][:20]!r} stands where an array begins"
+
+
+def _after_points(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
+    """Return the reason why no word is after the points of a binary file; VTK ends the process."""
+    head = _POINTS.match(data, at)
+    kind = head[2].decode().lower() if head else ""
+    width = next((count for part, count in file_parts.BYTES.items() if part in kind), 0)
+    if is_text or head is None or not width:
+        return ""
+    end = head.end() + 3 * int(head[1]) * width
+    rest = data[end : end + 80].lstrip()
+    return "" if not rest or rest[:1].isalpha() else "no word stands after its points"
 
 
 def _components(data: mmap.mmap | bytes, at: int) -> str:

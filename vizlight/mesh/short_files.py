@@ -159,29 +159,52 @@ for kind in range(20):
 reader.Update()
 sys.exit(not reader.GetOutput().GetNumberOfPoints())
 """
-#: Seconds that it may take, and what each megabyte adds.
-_EXODUS_SECONDS, _EXODUS_SECONDS_PER_MB = 15.0, 0.5
+#: Reads the last step of a case of EnSight, which says by itself where it has no points.
+_ENSIGHT = """
+import sys
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkIOEnSight import vtkGenericEnSightReader
+reader = vtkGenericEnSightReader()
+reader.SetCaseFileName(sys.argv[1])
+reader.UpdateInformation()
+steps = reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+reader.UpdateTimeStep(steps[-1]) if steps else reader.Update()
+"""
+#: Seconds that a program may take, and what each megabyte adds.
+_SECONDS, _SECONDS_PER_MB = 15.0, 0.5
 
 
 def _exodus(file: BinaryIO) -> str:
     """Read a file of HDF5 in another process: one that is damaged ends it, or spoils later ones."""
-    lacking, size = _netcdf(file), file.seek(0, 2)
+    lacking = _netcdf(file)
     file.seek(0)
-    # The command line is another process.
-    alone = _supervise.has_parent() or not sys.executable
-    if lacking or alone or file.read(len(_HDF)) != _HDF:
+    if lacking or file.read(len(_HDF)) != _HDF:
         return lacking
+    return _fault_elsewhere(file, _EXODUS, "Exodus", file.seek(0, 2))
+
+
+def _ensight(file: BinaryIO) -> str:
+    """Read a case in another process: one without some lines ends it, or is read without end."""
+    lacking = ensight.missing_part(file)
+    return lacking or _fault_elsewhere(file, _ENSIGHT, "EnSight", ensight.size(file))
+
+
+def _fault_elsewhere(file: BinaryIO, program: str, name: str, size: int) -> str:
+    """Return how a program that reads a file of some bytes ends, or "" if it ends well."""
+    # The command line is another process.
+    if _supervise.has_parent() or not sys.executable:
+        return ""
     try:
         run = subprocess.run(
-            [sys.executable, "-c", _EXODUS, file.name],
+            [sys.executable, "-c", program, file.name],
             capture_output=True,
             stdin=subprocess.DEVNULL,
-            timeout=_EXODUS_SECONDS + _EXODUS_SECONDS_PER_MB * size / 1e6,
+            timeout=_SECONDS + _SECONDS_PER_MB * size / 1e6,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return "VTK's reader of Exodus does not come to an end of it"
-    return "VTK's reader of Exodus cannot read it to its end" if run.returncode else ""
+        return f"VTK's reader of {name} does not come to an end of it"
+    return f"VTK's reader of {name} cannot read it to its end" if run.returncode else ""
 
 
 #: Bytes of the header of a binary STL file with its count, and of each triangle.
@@ -443,7 +466,7 @@ def _grib(file: BinaryIO) -> str:
 
 #: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
-    ".case": ensight.missing_part, ".vtk": legacy_vtk.missing_part, ".mdpa": _mdpa, ".obj": _obj,
+    ".case": _ensight, ".vtk": legacy_vtk.missing_part, ".mdpa": _mdpa, ".obj": _obj,
     ".png": _png, ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp, ".trx": _zip,
     ".vtm": vtk_xml.missing_block, **dict.fromkeys((".gz", ".mgz"), _gzip),
     **dict.fromkeys((".hdf", ".vtkhdf"), _vtkhdf),

@@ -439,6 +439,9 @@ def points_of_type(kind: int) -> int | None:
     """Return the least number of points of a cell of a type, None if VTK has no such type."""
     if not kind:
         return 0
+    # VTK keeps them as bytes.
+    if not 0 <= kind < 256:
+        return None
     cell = vtkGenericCell.InstantiateCell(kind)
     # Cells of any number of points have none at first, those of any order the corners.
     return None if cell is None else cell.GetNumberOfPoints()
