@@ -60,6 +60,8 @@ _UNITS = {
     "z": r"k?pa|hpa|mb|mbar|millibars?|bar|dbar|decibars?|(sigma_)?levels?|layers?",
     "t": r".* since .*",
 }
+#: Units of the angles of a scan.
+_ANGLES = r"(micro|µ|u)?rad(ian)?s?"
 #: Names of longitude and of latitude.
 _LONGITUDE = (
     r"(.*[_\W]|geo|[xtuvnrpcg])?(lon|long|longitude)s?(\d*|2d)(vertex|cell|node|edge)?([_\W].*)?"
@@ -141,8 +143,8 @@ class _Axis:
         Indices along the dimension of these.
     words : str
         Words for the meaning.
-    kind : {"degrees", "rotated", "length", "index", ""}
-        Kind of its unit.
+    kind : {"degrees", "rotated", "length", "angle", "index", ""}
+        Kind of its unit; an angle is one of a scan, which is no place.
     """
 
     ticks: Array
@@ -349,6 +351,8 @@ class _Reader:
         """Return x, y, z or t for a dimension, or an empty text, and what says so."""
         if self.topology is not None and dim in (self.topology.nodes, self.topology.faces):
             return "", ""  # a temperature T of the nodes is no time
+        if dim.lower().endswith(("bnds", "bounds")):
+            return "", ""  # begin and end of a time are no steps
         along = self._coordinate(dim)
         letter = ("", "") if along is None else _letter_of(str(along.name), along.attrs)
         return letter if letter[0] else _letter_of(dim, {})
@@ -895,6 +899,15 @@ class _Reader:
                 return projections.of_attributes(attributes)
         return ""
 
+    def _far(self) -> float:
+        """Return the height in metres from which a satellite scans the earth, 0 for none."""
+        heights = [
+            float(variable.attrs["perspective_point_height"])
+            for variable in self.file.variables.values()
+            if variable.attrs.get("grid_mapping_name") == "geostationary"
+        ]
+        return heights[0] if heights else 0.0
+
     def _system(self, ticks: Array, attributes: Foreign) -> str:
         """Return the unit of x and y by the text of the reference system of a grid, if it counts.
 
@@ -940,6 +953,11 @@ class _Reader:
         elif (scale := meaning.metres(unit)) is not None:
             axis.words = f"{name!r} in m{by}" + (f", from {unit}" if scale != 1 else "")
             _set_ticks(axis, scale * ticks, "length")
+        elif letter in ("x", "y") and (scanned := re.fullmatch(_ANGLES, unit)):
+            # Such an angle times the height of the satellite is a length in PROJ's plane.
+            scale = self._far() * (1e-6 if scanned[1] else 1.0)
+            axis.words = f"{name!r} in {f'm{by}, from {unit}' if scale else f'{unit}{by}'}"
+            _set_ticks(axis, (scale or 1.0) * ticks, "length" if scale else "angle")
         else:
             said = unit or attributes.get("standard_name")
             axis.words += f" in {unit}" if unit else ""
@@ -971,6 +989,9 @@ class _Reader:
             unit = georeference.DEGREE
         elif kinds == {"length"}:
             unit = "metre"
+        elif "angle" in kinds:
+            self.said.notes.append("angles of a scan without a known projection, no degrees")
+            return
         elif (
             "length" not in kinds
             and len(axes) == 2
