@@ -118,6 +118,27 @@ def test_begin_and_end_of_a_time_are_no_steps():
     assert meaning.of(mesh).span == [0.0, 6.0]
 
 
+@pytest.mark.parametrize(
+    ("place", "words", "height", "of_height", "section"),
+    [
+        ("lat", {}, "plev", {"units": "Pa"},
+         [("latitude", "degrees"), ("pressure", "hPa", -1.0)]),
+        ("lon", {}, "depth", {"units": "m", "positive": "down"},
+         [("longitude", "degrees"), ("depth", "m", -1.0)]),
+        ("x", {"units": "km", "long_name": "distance"}, "z", {"units": "km"},
+         [("distance", "km", 1e3), ("height", "km", 1e3)]),
+        ("x", {"units": "m"}, "pressure", {"units": "dbar"},
+         [("x", "m"), ("pressure", "dbar", -100.0)]),
+        ("x", {}, "lev", {"units": "1", "long_name": "sigma"}, [("x",), ("sigma", "", -1.0)]),
+    ],
+)  # fmt: skip
+def test_a_section_has_the_scales_of_its_axes(place, words, height, of_height, section):
+    axes = axes_of(**{place: (np.arange(20.0), words), height: (np.arange(1.0, 15.0), of_height)})
+    mesh = grid({"t": ((height, place), np.outer(np.arange(14.0), np.arange(20.0)))}, axes)
+    assert meaning.of(mesh).section == [meaning.AxisScale(*scale) for scale in section]
+    assert not mesh.bounds_size[2]
+
+
 def test_pressure_falls_upward_and_is_in_hectopascals():
     levels = (np.array([100_000.0, 85_000, 50_000]), {"units": "Pa"})
     mesh = grid(

@@ -60,6 +60,8 @@ _UNITS = {
     "z": r"k?pa|hpa|mb|mbar|millibars?|bar|dbar|decibars?|(sigma_)?levels?|layers?",
     "t": r".* since .*",
 }
+#: Length in metres from which on an axis of a section is in kilometres.
+_FAR = 12e3
 #: Units of the angles of a scan.
 _ANGLES = r"(micro|µ|u)?rad(ian)?s?"
 #: Names of longitude and of latitude.
@@ -467,6 +469,8 @@ class _Reader:
             text = self._projection(kind) if mapped or kind == "length" else ""
             if text and kind == axes[1].kind:
                 grid.field_data[georeference.PROJECTION if mapped else "crs"] = [text]
+        elif len(dims) == 2:
+            self.said.section = [self._scale(*one) for one in zip(dims, axes, strict=True)]
         if averaged:
             text = ", ".join(sorted(averaged))
             self.said.notes.append(f"averaged from the sides of cells to their middles: {text}")
@@ -963,6 +967,30 @@ class _Reader:
             axis.words += f" in {unit}" if unit else ""
             _set_ticks(axis, ticks, "" if said else "index")
         return axis
+
+    def _scale(self, dim: str, axis: _Axis) -> meaning.AxisScale:
+        """Return the numbers along an axis of a section, in the unit in which they are read."""
+        along, letter = self._coordinate(dim), self.letters[dim][0]
+        name, attributes = (dim, {}) if along is None else (str(along.name), along.attrs)
+        unit = str(attributes.get("units", "")).strip()
+        title = str(attributes.get("long_name", "")).strip() or name
+        factor = -1.0 if "counts down" in axis.words else 1.0
+        pressure = _PRESSURES.get(unit.lower().removesuffix("s")) if letter == "z" else None
+        if pressure is not None:
+            # That of the sea has a unit of its own.
+            in_sea = unit.lower().startswith("d")
+            return meaning.AxisScale(
+                "pressure", unit if in_sea else "hPa", -pressure if in_sea else -1
+            )
+        if axis.kind == "degrees" and letter in ("x", "y"):
+            return meaning.AxisScale("longitude" if letter == "x" else "latitude", "degrees")
+        if axis.kind == "length" or meaning.metres(unit) is not None:
+            if letter == "z":
+                title = "depth" if factor < 0 else "height" if axis.ticks[0] >= 0 else name
+            long = np.ptp(axis.ticks) >= _FAR
+            return meaning.AxisScale(title, "km" if long else "m", factor * (1e3 if long else 1.0))
+        unit = "" if unit == "1" or axis.kind == "index" else meaning.written(unit)
+        return meaning.AxisScale(title, unit, factor)
 
     def _heights(self, name: str, rows: Raw, attributes: Foreign, *, flat: bool) -> Raw:
         """Return heights in metres and up; other values, and all in a volume, as they are."""
