@@ -139,6 +139,27 @@ def test_a_section_has_the_scales_of_its_axes(place, words, height, of_height, s
     assert not mesh.bounds_size[2]
 
 
+@pytest.mark.parametrize(
+    ("unit", "step", "read_in", "end"),
+    [
+        ("seconds since 2001-03-01", 1800, "hours since 2001-03-01", 9.5),
+        ("hours since 2001-03-01 06:00", 6, "days since 2001-03-01 06:00", 4.75),
+        ("months since 2001-03-01", 1, "months since 2001-03-01", 19.0),
+    ],
+)
+def test_the_time_of_a_mast_is_an_axis(unit, step, read_in, end):
+    axes = axes_of(
+        time=(np.arange(20.0) * step, {"units": unit}), depth=(np.arange(10.0), {"units": "m"})
+    )
+    axes |= {"lat": ("lat", [50.0]), "lon": ("lon", [8.0])}
+    values = np.outer(np.arange(20.0), np.arange(10.0)).reshape(20, 10, 1, 1)
+    mesh = grid({"t": (("time", "depth", "lat", "lon"), values)}, axes)
+    assert mesh.bounds[:4] == pytest.approx((0, end, -9, 0))
+    assert meaning.of(mesh).section[0] == meaning.AxisScale("time", read_in)
+    assert series.of(mesh) == []
+    np.testing.assert_allclose(mesh["t"].reshape(10, 20)[0], 9 * np.arange(20))
+
+
 def test_pressure_falls_upward_and_is_in_hectopascals():
     levels = (np.array([100_000.0, 85_000, 50_000]), {"units": "Pa"})
     mesh = grid(

@@ -60,6 +60,8 @@ _UNITS = {
     "z": r"k?pa|hpa|mb|mbar|millibars?|bar|dbar|decibars?|(sigma_)?levels?|layers?",
     "t": r".* since .*",
 }
+#: Units in which times along an axis are read, and their lengths in seconds.
+_CLOCK = (("days", 86_400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0))
 #: Length in metres from which on an axis of a section is in kilometres.
 _FAR = 12e3
 #: Units of the angles of a scan.
@@ -145,7 +147,7 @@ class _Axis:
         Indices along the dimension of these.
     words : str
         Words for the meaning.
-    kind : {"degrees", "rotated", "length", "angle", "index", ""}
+    kind : {"degrees", "rotated", "length", "angle", "time", "index", ""}
         Kind of its unit; an angle is one of a scan, which is no place.
     """
 
@@ -367,14 +369,35 @@ class _Reader:
         ticking, step, single = self._step(time)
         notes = [*self.said.notes]
         single |= self._chosen(at)
+        clock = "" if time is not None else self._clock_of_section({*at})
+        is_drawn = clock != "" and not self._fields(single)
+        if is_drawn:
+            self.letters[clock] = "x", self.letters[clock][1]
+            self.said.span = []
+            del single[clock]
         mesh = self._mesh(single, nodata, source)
         if time is None and not at and _is_empty(mesh) and (clocks := self._last_with_data()):
             self.said.notes = notes
             ticking, step, single = self._step(time, clocks)
             mesh = self._mesh(single, nodata, source)
         of_track = self.listed is not None and self.letters[self.listed.dim][0] == "t"
-        is_step = (len(ticking) > 1 or self.said.time) and not of_track
+        is_step = (len(ticking) > 1 or self.said.time) and not (of_track or is_drawn)
         return series.marked(mesh, ticking, step) if is_step else mesh
+
+    def _clock_of_section(self, chosen: set[str]) -> str:
+        """Return the axis of time of values that have it and heights alone, as those of a mast.
+
+        Empty where there are none, or where one value is chosen along it.
+        """
+        if self.topology is not None or self.listed is not None:
+            return ""
+        for variable in self.file.data_vars.values():
+            sizes = {str(dim): int(size) for dim, size in variable.sizes.items()}
+            dims = [dim for dim, size in sizes.items() if size > 1 and dim not in chosen]
+            by_letter = {self.letters[dim][0]: dim for dim in dims}
+            if len(dims) == 2 and by_letter.keys() == {"t", "z"}:
+                return by_letter["t"]
+        return ""
 
     def _join_faces(self, at: Mapping[str, object]) -> None:
         """Put the cells on the faces of a cube in one list, if none of the faces is chosen."""
@@ -903,6 +926,18 @@ class _Reader:
                 return projections.of_attributes(attributes)
         return ""
 
+    def _since(self, ticks: Array) -> tuple[Array, str]:
+        """Return times since the first one, and the unit in which they are read."""
+        unit, first = self.said.time, float(ticks.min())
+        size, start = dates.seconds(unit) or 1.0, dates.date(first, unit).removesuffix(" 00:00")
+        long = size * float(np.ptp(ticks))
+        # Months and years have no length of their own.
+        name, length = next(
+            (one for one in _CLOCK if long >= 3 * one[1] and size <= _CLOCK[0][1]),
+            (unit.partition(" ")[0], size),
+        )
+        return (ticks - first) * size / length, f"{name} since {start}" if start else name
+
     def _far(self) -> float:
         """Return the height in metres from which a satellite scans the earth, 0 for none."""
         heights = [
@@ -957,6 +992,10 @@ class _Reader:
         elif (scale := meaning.metres(unit)) is not None:
             axis.words = f"{name!r} in m{by}" + (f", from {unit}" if scale != 1 else "")
             _set_ticks(axis, scale * ticks, "length")
+        elif " since " in unit:
+            ticks, unit = self._since(ticks)
+            axis.words = f"time in {unit}{by}"
+            _set_ticks(axis, ticks, "time")
         elif letter in ("x", "y") and (scanned := re.fullmatch(_ANGLES, unit)):
             # Such an angle times the height of the satellite is a length in PROJ's plane.
             scale = self._far() * (1e-6 if scanned[1] else 1.0)
@@ -984,6 +1023,9 @@ class _Reader:
             )
         if axis.kind == "degrees" and letter in ("x", "y"):
             return meaning.AxisScale("longitude" if letter == "x" else "latitude", "degrees")
+        if axis.kind == "time":
+            times: Array = np.array(along.values, dtype=np.float64)
+            return meaning.AxisScale("time", self._since(times)[1])
         if axis.kind == "length" or meaning.metres(unit) is not None:
             if letter == "z":
                 title = "depth" if factor < 0 else "height" if axis.ticks[0] >= 0 else name
