@@ -6,7 +6,7 @@ import pyvista as pv
 
 from vizlight.draw import map_frames
 from vizlight.draw.map_frames import frame, graticule, ticks
-from vizlight.mesh import charts
+from vizlight.mesh import charts, meaning
 from vizlight.mesh.charts import chart
 from vizlight.mesh.georeference import in_degrees
 from vizlight.vtk import letters
@@ -192,3 +192,45 @@ def test_a_chart_on_its_side_has_its_parallels_below():
     assert made[:, 0].max() < east + size
     beside = made[made[:, 0] < west - size]
     assert np.ptp(beside[:, 1]) > 0.5 * (north - south)
+
+
+def framed(section, bounds, size, monkeypatch):
+    """Return the words of the frame of a section, and the frame."""
+    mesh, words = sheet(bounds[1] - bounds[0], bounds[3] - bounds[2], unit=""), []
+    mesh.origin = (bounds[0], bounds[2], 0.0)
+    meaning.attach(mesh, meaning.Meaning(section=section))
+    triangles = letters.triangles
+    monkeypatch.setattr(letters, "width", lambda word: np.ptp(triangles(word)[0][:, 0]))
+    monkeypatch.setattr(letters, "triangles", lambda word: words.append(word) or triangles(word))
+    return words, frame(mesh, size)
+
+
+def test_a_section_has_numbers_on_two_sides_and_what_they_are(monkeypatch):
+    scales = [meaning.AxisScale("latitude"), meaning.AxisScale("depth", "m", -0.02)]
+    words, made = framed(scales, (-60, 60, -100, 0), 6.0, monkeypatch)
+    below, beside = words[:5], words[5:]
+    assert below == ["60°S", "30°S", "0°", "30°N", "60°N"]
+    assert beside == ["0", "1000", "2000", "3000", "4000", "5000", "depth (m)"]
+    west, east, south, north = made.bounds[:4]
+    # The title is beside the numbers.
+    assert west < -60 - 6 * (letters.width("5000") + 0.73)
+    assert south < -100 - 6
+    assert (east, north) == pytest.approx((60, 0), abs=12)
+
+
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [
+        (3.0, ["1", "2", "5", "10", "20", "50", "100", "200", "500", "1000"]),
+        (5.0, ["1", "3", "10", "30", "100", "300", "1000"]),
+        (8.0, ["1", "10", "100", "1000"]),
+        (16.0, ["1", "100"]),
+    ],
+)
+def test_pressures_by_their_logarithm_have_round_numbers(size, words, monkeypatch):
+    scales = [
+        meaning.AxisScale("longitude"),
+        meaning.AxisScale("pressure", "hPa", -25.0, is_log=True),
+    ]
+    found, _ = framed(scales, (0.0, 100.0, -75.0, 0.0), size, monkeypatch)
+    assert [word for word in found if "°" not in word] == [*words, "pressure (hPa)"]

@@ -61,6 +61,22 @@ def test_maps_have_what_suits_them(mesh, options, parts):
     assert paths(vizlight.look(mesh, size=SIZE, **options))[1:] == parts
 
 
+def test_a_section_lies_as_it_is_and_has_isolines_and_numbers():
+    mesh = chart(30, 900, unit="")
+    scales = [meaning.AxisScale("distance", "km", 1e3), meaning.AxisScale("pressure", "hPa", -1.0)]
+    mesh.origin = (0.0, -1000.0, 0.0)
+    meaning.attach(mesh, meaning.Meaning(section=scales))
+    look = vizlight.look(mesh, size=SIZE)
+    assert paths(look)[1:] == [*ISOLINES, "frame"]
+    x, y, _ = look.mesh.bounds_size
+    assert x / y == pytest.approx(1.6, rel=1e-3)
+    np.testing.assert_allclose(look.view.up, (0, 1, 0), atol=1e-6)
+    assert "with height up" in look.reason
+    assert "the section fills the picture, its axes have different units" in look.notes
+    mesh["u"] = mesh["v"] = mesh["warmth"]
+    assert vizlight.look(mesh, size=SIZE).question == "none"
+
+
 def test_parts_of_a_map_by_name():
     rough = chart(60, 40)
     rough["warmth"] = np.random.default_rng(3).uniform(size=rough.n_points)

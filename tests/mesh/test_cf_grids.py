@@ -8,7 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import cartography, files
-from vizlight.mesh import dates, meaning, projections
+from vizlight.mesh import dates, meaning, projections, series
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
@@ -94,6 +94,70 @@ def test_lengths_in_kilometres_and_what_the_axes_are():
     assert mesh.bounds[1] == 22_000
     assert mesh.field_data["unit"][0] == "metre"
     assert meaning.line(mesh) == "x 'x' in m by axis, from km, y 'y' in m by axis, from km"
+
+
+@pytest.mark.parametrize(("unit", "scale"), [("rad", 1.0), ("microradian", 1e6)])
+def test_angles_of_a_satellite_are_lengths_of_its_plane(unit, scale):
+    x, y = (np.array([0.0, 0.05, 0.1]) * scale, {"units": unit}), (LAT[:2] * scale, {"units": unit})
+    system = {"grid_mapping_name": "geostationary", "perspective_point_height": 1e6}
+    fields = {"t": (("y", "x"), 300 * HEIGHTS[:2, :3])}
+    mesh = grid(fields | {"system": ((), 0, system)}, axes_of(x=x, y=y))
+    np.testing.assert_allclose(mesh.bounds[:4], (0.0, 1e5, LAT[0] * 1e6, LAT[1] * 1e6))
+    assert str(mesh.field_data["unit"][0]) == "metre"
+    assert str(mesh.field_data["crs"][0]) == "+proj=geos +h=1000000 +sweep=y"
+    mesh = grid(fields, axes_of(x=x, y=y))
+    assert "unit" not in mesh.field_data
+    assert "angles of a scan without a known projection, no degrees" in meaning.line(mesh)
+
+
+def test_begin_and_end_of_a_time_are_no_steps():
+    fields = {"t": (("lat", "lon"), HEIGHTS), "time_bounds": ("number_of_time_bounds", [0.0, 6.0])}
+    time = {"units": "hours since 2001-01-01", "bounds": "time_bounds"}
+    mesh = grid(fields, {"lat": LAT, "lon": LON, "time": ((), 3.0, time)})
+    assert series.of(mesh) == [3.0]
+    assert meaning.of(mesh).span == [0.0, 6.0]
+
+
+@pytest.mark.parametrize(
+    ("place", "words", "height", "of_height", "section"),
+    [
+        ("lat", {}, "plev", {"units": "Pa"},
+         [("latitude", "degrees"), ("pressure", "hPa", -1.0)]),
+        ("lon", {}, "depth", {"units": "m", "positive": "down"},
+         [("longitude", "degrees"), ("depth", "m", -1.0)]),
+        ("x", {"units": "km", "long_name": "distance"}, "z", {"units": "km"},
+         [("distance", "km", 1e3), ("height", "km", 1e3)]),
+        ("x", {"units": "m"}, "pressure", {"units": "dbar"},
+         [("x", "m"), ("pressure", "dbar", -100.0)]),
+        ("x", {}, "lev", {"units": "1", "long_name": "sigma"}, [("x",), ("sigma", "", -1.0)]),
+    ],
+)  # fmt: skip
+def test_a_section_has_the_scales_of_its_axes(place, words, height, of_height, section):
+    axes = axes_of(**{place: (np.arange(20.0), words), height: (np.arange(1.0, 15.0), of_height)})
+    mesh = grid({"t": ((height, place), np.outer(np.arange(14.0), np.arange(20.0)))}, axes)
+    assert meaning.of(mesh).section == [meaning.AxisScale(*scale) for scale in section]
+    assert not mesh.bounds_size[2]
+
+
+@pytest.mark.parametrize(
+    ("unit", "step", "read_in", "end"),
+    [
+        ("seconds since 2001-03-01", 1800, "hours since 2001-03-01", 9.5),
+        ("hours since 2001-03-01 06:00", 6, "days since 2001-03-01 06:00", 4.75),
+        ("months since 2001-03-01", 1, "months since 2001-03-01", 19.0),
+    ],
+)
+def test_the_time_of_a_mast_is_an_axis(unit, step, read_in, end):
+    axes = axes_of(
+        time=(np.arange(20.0) * step, {"units": unit}), depth=(np.arange(10.0), {"units": "m"})
+    )
+    axes |= {"lat": ("lat", [50.0]), "lon": ("lon", [8.0])}
+    values = np.outer(np.arange(20.0), np.arange(10.0)).reshape(20, 10, 1, 1)
+    mesh = grid({"t": (("time", "depth", "lat", "lon"), values)}, axes)
+    assert mesh.bounds[:4] == pytest.approx((0, end, -9, 0))
+    assert meaning.of(mesh).section[0] == meaning.AxisScale("time", read_in)
+    assert series.of(mesh) == []
+    np.testing.assert_allclose(mesh["t"].reshape(10, 20)[0], 9 * np.arange(20))
 
 
 def test_pressure_falls_upward_and_is_in_hectopascals():

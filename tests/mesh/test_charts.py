@@ -142,3 +142,12 @@ def test_what_is_no_sheet():
     metres = pv.Plane()
     metres.field_data["unit"] = ["metre"]
     assert charts.sheet(metres) is None
+
+
+def test_the_earth_as_a_satellite_sees_it_has_corners_beside_it():
+    pytest.importorskip("rasterio")
+    disc = pv.ImageData(dimensions=(2, 2, 1), spacing=(11e6, 11e6, 1), origin=(-5.5e6, -5.5e6, 0))
+    disc.field_data["unit"], disc.field_data["crs"] = ["metre"], ["+proj=geos +h=35786023"]
+    sheet = charts.sheet(disc)
+    assert not sheet.is_around
+    assert sheet.extent == pytest.approx((-81, 81, -81, 81), abs=8)

@@ -98,6 +98,8 @@ def test_equal_earth_keeps_areas_and_both_ends_of_a_turn():
         ({"MAP_PROJ": 2, "TRUELAT1": -70.0, "STAND_LON": 0.0},
          "+proj=stere +lat_0=-90 +lon_0=0 +R=6371008.8"),
         ({"MAP_PROJ": 3}, ""),
+        ({"grid_mapping_name": "geostationary", "perspective_point_height": 35786000.0,
+          "fixed_angle_axis": "y"}, "+proj=geos +h=35786000 +sweep=x"),
         ({"grid_mapping_name": "latitude_longitude"}, ""),
         ({"grid_mapping_name": "x", "crs_wkt": "PROJCS[]"}, "PROJCS[]"),
     ],
@@ -111,6 +113,19 @@ def test_places_beyond_a_projection_of_proj_take_no_other_with_them():
     plane = projections.of_text("+proj=ortho +lat_0=50 +lon_0=0")
     flat = plane.forward(np.array([[0.0, 50.0], [180.0, 0.0], [10.0, 50.0]]))
     assert np.isfinite(flat).all(axis=1).tolist() == [True, False, True]
+
+
+def test_the_example_of_the_guide_to_goes():
+    pytest.importorskip("rasterio")
+    # Product Definition and Users' Guide, volume 5, section 4.2.8: angles in radians, a place.
+    angles, place = np.array([[-0.024052, 0.095340]]), [[-84.690932, 33.846162]]
+    system = {
+        "grid_mapping_name": "geostationary", "perspective_point_height": 35786023.0,
+        "semi_major_axis": 6378137.0, "semi_minor_axis": 6356752.31414,
+        "longitude_of_projection_origin": -75.0, "sweep_angle_axis": "x",
+    }  # fmt: skip
+    plane = projections.of_text(projections.of_attributes(system))
+    np.testing.assert_allclose(plane.inverse(35786023.0 * angles), place, atol=1e-5)
 
 
 @pytest.mark.parametrize("text", ["", "no such system", "EPSG:4326"])

@@ -5,6 +5,7 @@ It is a mesh and not part of a window, so that it is in pictures, movies and pag
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import TYPE_CHECKING
 
@@ -12,13 +13,13 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.draw.ticks import round_length
+from vizlight.draw.ticks import even_numbers, round_length
 from vizlight.mesh import blocks, charts, georeference, meaning, polylines
 from vizlight.vtk import letters
 from vizlight.vtk.letters import DIGIT, union
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from vizlight._types import Array, Indices
 
@@ -45,6 +46,10 @@ ASIDE = 0.5
 FINE, SMALL = 721, 0.75
 #: Largest length of a bar, as a share of the width of its map, and its height in letters.
 BAR, THICK = 0.25, 0.2
+#: Letters for degrees above and below 0, by the titles of scales.
+SIGNS = {"longitude": "EW", "latitude": "NS"}
+#: Turn of words along a height, which are read from the right.
+READ_FROM_RIGHT = np.array([[0.0, 1.0], [-1.0, 0.0]])
 
 #: Corners and triangles of one part of a frame.
 Part = tuple["Array", "Indices"]
@@ -58,6 +63,9 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
     as has one in degrees, if it is less than 2000 km wide or of no known projection. An arrow
     toward the north is beside the bar, and below a map without one whose north is not straight up
     and has no degrees. Nothing is on the data but the words of parallels around a pole.
+
+    A vertical section of a file has round numbers along its left and its lower side instead, and
+    words for them.
 
     Parameters
     ----------
@@ -93,6 +101,10 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
     is_degrees, sheet = georeference.has_degrees(mesh), charts.sheet(mesh)
     straight = np.abs(turn).max() > 1 - ALMOST
     parts: list[Part] = []
+    if section := meaning.of(mesh).section:
+        # A section that is turned has no side that is its lower one.
+        parts = _scales(box, letters, section) if turn[1, 1] > 1 - ALMOST else []
+        return _joined(parts, mesh, turn)
     if is_degrees and straight:
         parts += _degrees(box, letters, np.rint(turn))
     if sheet is not None:
@@ -105,6 +117,11 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
         parts += [*_bar(box, letters, metres), *_arrow(box, letters, turn)]
     elif turn[1, 1] <= 1 - ALMOST and not (is_degrees and straight):
         parts += _arrow(box, letters, turn)
+    return _joined(parts, mesh, turn)
+
+
+def _joined(parts: Sequence[Part], mesh: pv.DataSet, turn: Array) -> pv.PolyData:
+    """Return parts in the picture as one mesh at the highest z of a map."""
     if not parts:
         return pv.PolyData()
     corners, triangles = union(parts)
@@ -199,6 +216,13 @@ def _box(mesh: pv.DataSet, turn: Array) -> Array:
 def _degrees(box: Array, size: float, turn: Array) -> list[Part]:
     """Return a frame with its ticks and their words; in the picture x is 1, 0 or -1 of east."""
     left, right, bottom, top = box
+    east, north = _along(left, right, size, turn[0]), _along(bottom, top, size, turn[1])
+    return _sides(box, size, east, north)
+
+
+def _sides(box: Array, size: float, *words: Sequence[tuple[float, str]]) -> list[Part]:
+    """Return a frame with ticks and their words: those along its lower and along its left side."""
+    left, right, bottom, top = box
     line = LINE * size
     parts = [
         _rectangle(left - line, right + line, bottom - line, bottom),
@@ -207,13 +231,73 @@ def _degrees(box: Array, size: float, turn: Array) -> list[Part]:
         _rectangle(right, right + line, bottom, top),
     ]
     below, beside = bottom - (TICK + GAP + DIGIT) * size, left - (TICK + GAP) * size
-    for value, word in _along(left, right, size, turn[0]):
+    for value, word in words[0]:
         parts.append(_rectangle(value - line / 2, value + line / 2, bottom - TICK * size, bottom))
         parts.append(_word(word, value, below, size, align=0.5))
-    for value, word in _along(bottom, top, size, turn[1]):
+    for value, word in words[1]:
         parts.append(_rectangle(left - TICK * size, left, value - line / 2, value + line / 2))
         parts.append(_word(word, beside, value - DIGIT * size / 2, size, align=1.0))
     return parts
+
+
+def _scales(box: Array, size: float, section: Sequence[meaning.AxisScale]) -> list[Part]:
+    """Return the frame of a section: round numbers along two sides, and what they are."""
+    left, right, bottom, top = box
+    flat, up = section
+    below = _numbers(left, right, size, flat, is_up=False)
+    beside = _numbers(bottom, top, size, up, is_up=True)
+    widest = max((letters.width(word) for _, word in beside), default=0.0)
+    under = bottom - (TICK + 3 * GAP + 2 * DIGIT) * size
+    aside = left - (TICK + 3 * GAP + widest) * size
+    parts = _sides(box, size, below, beside)
+    titles = (
+        (flat, right - left, np.eye(2), ((left + right) / 2, under)),
+        (up, top - bottom, READ_FROM_RIGHT, (aside, (bottom + top) / 2)),
+    )
+    for scale, long, turn, place in titles:
+        if title := _title(scale):
+            small = min(size, long / letters.width(title))
+            points, ids = _word(title, 0.0, 0.0, small, align=0.5)
+            parts.append((points @ turn + place, ids))
+    return parts
+
+
+def _title(scale: meaning.AxisScale) -> str:
+    """Return the words for the numbers along a side, none for degrees that say it themselves."""
+    if scale.title in SIGNS:
+        return ""
+    return f"{scale.title} ({scale.unit})" if scale.unit else scale.title
+
+
+def _numbers(
+    low: float, high: float, size: float, scale: meaning.AxisScale, *, is_up: bool
+) -> list[tuple[float, str]]:
+    """Return the places of round numbers along a side of a section, and the numbers."""
+    first, last = sorted((low / scale.factor, high / scale.factor))
+    if scale.title in SIGNS:
+        return ticks(first, last, size, SIGNS[scale.title], is_up=is_up)
+    for numbers in _round_powers(first, last) if scale.is_log else _round(first, last):
+        places = [(scale.factor * value, word) for value, word in numbers]
+        widest = max((letters.width(word) for _, word in places), default=0.0)
+        room = size * (DIGIT * ABOVE if is_up else widest * BESIDE)
+        if all(abs(b - a) >= room for (a, _), (b, _) in itertools.pairwise(places)):
+            return places
+    return []
+
+
+def _round(low: float, high: float) -> Iterator[list[tuple[float, str]]]:
+    """Yield round numbers within a range, and their digits, ever fewer."""
+    for most in range(MOST, 1, -1):
+        yield even_numbers(low, high, most)
+
+
+def _round_powers(low: float, high: float) -> Iterator[list[tuple[float, str]]]:
+    """Yield the logarithms of round numbers within a range of these, and their digits."""
+    powers = range(math.floor(low), math.ceil(high) + 1)
+    for digits, step in (((1, 2, 5), 1), ((1, 3), 1), *(((1,), step) for step in range(1, MOST))):
+        values = [digit * 10.0**power for power in powers if power % step == 0 for digit in digits]
+        every = [(math.log10(value), f"{value:.6g}") for value in values]
+        yield [(place, word) for place, word in every if low - ALMOST <= place <= high + ALMOST]
 
 
 def _graticule(sheet: charts.MapSheet, size: float) -> list[tuple[Array, str, bool]]:
@@ -367,7 +451,13 @@ def _along(low: float, high: float, size: float, way: Array) -> list[tuple[float
 
 
 def ticks(
-    low: float, high: float, size: float, signs: str, most: int = MOST
+    low: float,
+    high: float,
+    size: float,
+    signs: str,
+    most: int = MOST,
+    *,
+    is_up: bool | None = None,
 ) -> list[tuple[float, str]]:
     """Return round places along a side of a map, and their words.
 
@@ -381,14 +471,17 @@ def ticks(
         Letters for degrees above and below 0.
     most : int
         Largest number of places.
+    is_up : bool, optional
+        Whether they stand one above the other. Default: latitudes do.
     """
+    is_up = signs == "NS" if is_up is None else is_up
     for step in STEPS:
         first, last = math.ceil(low / step - 1e-6), math.floor(high / step + 1e-6)
         if last - first + 1 > most:
             continue
         places = [(i * step, _word_of(i * step, step, signs)) for i in range(first, last + 1)]
         widest = max((letters.width(word) for _, word in places), default=0.0)
-        if step >= size * (widest * BESIDE if signs == "EW" else DIGIT * ABOVE):
+        if step >= size * (DIGIT * ABOVE if is_up else widest * BESIDE):
             return places
     return []
 

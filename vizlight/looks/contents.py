@@ -266,7 +266,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     ]
     joined = [
         Named(",".join(names), "vectors", names[0] not in mesh.point_data)
-        for names in meaning.components(mesh)
+        # On a vertical section one of them points out of the picture.
+        for names in ([] if meaning.of(mesh).section else meaning.components(mesh))
         if ",".join(names) not in mesh.array_names and not all(map(_is_table, names))
     ]
     active = (mesh.active_scalars_name, mesh.active_vectors_name)

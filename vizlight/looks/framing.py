@@ -15,6 +15,7 @@ import pyvista as pv
 import scipy
 
 from vizlight.looks.contents import LAYER
+from vizlight.mesh import meaning
 from vizlight.mesh.creases import creases
 from vizlight.vtk.cells import connectivity
 
@@ -110,6 +111,8 @@ def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
     toward = tuple(float(i == axis) * (-1.0 if axis == 1 else 1.0) for i in range(3))
     up: Vector = (0.0, 1.0, 0.0) if axis == 2 else (0.0, 0.0, 1.0)
     words = "from above, north up" if axis == 2 else f"along {'xyz'[axis]}"
+    if meaning.of(mesh).section:
+        return Viewpoint(toward, up, True, "with height up")
     right = np.cross(up, toward)
     points = _some(np.asarray(mesh.points, dtype=np.float64))
     flat = np.stack([points @ right, points @ np.asarray(up)], axis=1)

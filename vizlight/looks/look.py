@@ -626,12 +626,21 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     factor = georeference.stretch(step.run())
     if factor != 1:
         step = Step("stretched", "files.stretched", step, factor)
-        notes.append(f"the volume is in metres over its map, its z taken {factor:g} times")
+        notes.append(_of_stretched(step.run(), factor))
     if part.get("contour") is not None and wishes.question != "flow":
         step = wishes.isosurface(step)
     of_light = (wishes.light.get(name) for name in ("normals", "occlusion", "positions"))
     without = tuple(name for name in of_light if isinstance(name, str))
     return step, Contents(step.run(), raster, without), notes
+
+
+def _of_stretched(mesh: pv.DataSet, factor: float) -> str:
+    """Return the note that tells how a volume or a section was stretched."""
+    section = meaning.of(mesh).section
+    if not section:
+        return f"the volume is in metres over its map, its z taken {factor:g} times"
+    by = ", pressures by their logarithm" * section[1].is_log
+    return f"the section fills the picture, its axes have different units{by}"
 
 
 def _chosen(data: Step, contents: Contents, wishes: Wishes) -> tuple[Rule, Case]:

@@ -31,6 +31,8 @@ PARTS = ("coasts", "frame", "isolines")
 #: Room that a frame takes at the left and below its map, in heights of letters: that of 60°N, and
 #: of a line of words; and that of a bar below them.
 ROOM, BAR = (3.2, 1.5), 1.6
+#: More room at the left of and below a section, for the words of its axes.
+TITLES = 1.4
 #: Least extent in degrees of a map with coasts, which are right to some 0.1 degrees.
 COASTS = 20.0
 #: Most points of a map with isolines; most levels of these, the fewer first, which are drawn where
@@ -96,6 +98,7 @@ def letters(mesh: pv.DataSet, wishes: Wishes, up: Sequence[float]) -> float:
         sides = sides[::-1]
     # The data and the room of the frame are to fill the picture together.
     around = np.array([ROOM[0], ROOM[1] + BAR * has_bar(mesh)])
+    around += TITLES * bool(meaning.of(mesh).section)
     scale = float(np.max(sides / (room - around * pixels)))
     zoom = _check.positive("zoom", wishes.eye.get("zoom", 1.0))
     return float(f"{pixels * scale / zoom:.4g}")

@@ -60,6 +60,12 @@ _UNITS = {
     "z": r"k?pa|hpa|mb|mbar|millibars?|bar|dbar|decibars?|(sigma_)?levels?|layers?",
     "t": r".* since .*",
 }
+#: Units in which times along an axis are read, and their lengths in seconds.
+_CLOCK = (("days", 86_400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0))
+#: Length in metres from which on an axis of a section is in kilometres.
+_FAR = 12e3
+#: Units of the angles of a scan.
+_ANGLES = r"(micro|µ|u)?rad(ian)?s?"
 #: Names of longitude and of latitude.
 _LONGITUDE = (
     r"(.*[_\W]|geo|[xtuvnrpcg])?(lon|long|longitude)s?(\d*|2d)(vertex|cell|node|edge)?([_\W].*)?"
@@ -141,8 +147,8 @@ class _Axis:
         Indices along the dimension of these.
     words : str
         Words for the meaning.
-    kind : {"degrees", "rotated", "length", "index", ""}
-        Kind of its unit.
+    kind : {"degrees", "rotated", "length", "angle", "time", "index", ""}
+        Kind of its unit; an angle is one of a scan, which is no place.
     """
 
     ticks: Array
@@ -349,6 +355,8 @@ class _Reader:
         """Return x, y, z or t for a dimension, or an empty text, and what says so."""
         if self.topology is not None and dim in (self.topology.nodes, self.topology.faces):
             return "", ""  # a temperature T of the nodes is no time
+        if dim.lower().endswith(("bnds", "bounds")):
+            return "", ""  # begin and end of a time are no steps
         along = self._coordinate(dim)
         letter = ("", "") if along is None else _letter_of(str(along.name), along.attrs)
         return letter if letter[0] else _letter_of(dim, {})
@@ -361,14 +369,35 @@ class _Reader:
         ticking, step, single = self._step(time)
         notes = [*self.said.notes]
         single |= self._chosen(at)
+        clock = "" if time is not None else self._clock_of_section({*at})
+        is_drawn = clock != "" and not self._fields(single)
+        if is_drawn:
+            self.letters[clock] = "x", self.letters[clock][1]
+            self.said.span = []
+            del single[clock]
         mesh = self._mesh(single, nodata, source)
         if time is None and not at and _is_empty(mesh) and (clocks := self._last_with_data()):
             self.said.notes = notes
             ticking, step, single = self._step(time, clocks)
             mesh = self._mesh(single, nodata, source)
         of_track = self.listed is not None and self.letters[self.listed.dim][0] == "t"
-        is_step = (len(ticking) > 1 or self.said.time) and not of_track
+        is_step = (len(ticking) > 1 or self.said.time) and not (of_track or is_drawn)
         return series.marked(mesh, ticking, step) if is_step else mesh
+
+    def _clock_of_section(self, chosen: set[str]) -> str:
+        """Return the axis of time of values that have it and heights alone, as those of a mast.
+
+        Empty where there are none, or where one value is chosen along it.
+        """
+        if self.topology is not None or self.listed is not None:
+            return ""
+        for variable in self.file.data_vars.values():
+            sizes = {str(dim): int(size) for dim, size in variable.sizes.items()}
+            dims = [dim for dim, size in sizes.items() if size > 1 and dim not in chosen]
+            by_letter = {self.letters[dim][0]: dim for dim in dims}
+            if len(dims) == 2 and by_letter.keys() == {"t", "z"}:
+                return by_letter["t"]
+        return ""
 
     def _join_faces(self, at: Mapping[str, object]) -> None:
         """Put the cells on the faces of a cube in one list, if none of the faces is chosen."""
@@ -463,6 +492,8 @@ class _Reader:
             text = self._projection(kind) if mapped or kind == "length" else ""
             if text and kind == axes[1].kind:
                 grid.field_data[georeference.PROJECTION if mapped else "crs"] = [text]
+        elif len(dims) == 2:
+            self.said.section = [self._scale(*one) for one in zip(dims, axes, strict=True)]
         if averaged:
             text = ", ".join(sorted(averaged))
             self.said.notes.append(f"averaged from the sides of cells to their middles: {text}")
@@ -895,6 +926,27 @@ class _Reader:
                 return projections.of_attributes(attributes)
         return ""
 
+    def _since(self, ticks: Array) -> tuple[Array, str]:
+        """Return times since the first one, and the unit in which they are read."""
+        unit, first = self.said.time, float(ticks.min())
+        size, start = dates.seconds(unit) or 1.0, dates.date(first, unit).removesuffix(" 00:00")
+        long = size * float(np.ptp(ticks))
+        # Months and years have no length of their own.
+        name, length = next(
+            (one for one in _CLOCK if long >= 3 * one[1] and size <= _CLOCK[0][1]),
+            (unit.partition(" ")[0], size),
+        )
+        return (ticks - first) * size / length, f"{name} since {start}" if start else name
+
+    def _far(self) -> float:
+        """Return the height in metres from which a satellite scans the earth, 0 for none."""
+        heights = [
+            float(variable.attrs["perspective_point_height"])
+            for variable in self.file.variables.values()
+            if variable.attrs.get("grid_mapping_name") == "geostationary"
+        ]
+        return heights[0] if heights else 0.0
+
     def _system(self, ticks: Array, attributes: Foreign) -> str:
         """Return the unit of x and y by the text of the reference system of a grid, if it counts.
 
@@ -940,11 +992,47 @@ class _Reader:
         elif (scale := meaning.metres(unit)) is not None:
             axis.words = f"{name!r} in m{by}" + (f", from {unit}" if scale != 1 else "")
             _set_ticks(axis, scale * ticks, "length")
+        elif " since " in unit:
+            ticks, unit = self._since(ticks)
+            axis.words = f"time in {unit}{by}"
+            _set_ticks(axis, ticks, "time")
+        elif letter in ("x", "y") and (scanned := re.fullmatch(_ANGLES, unit)):
+            # Such an angle times the height of the satellite is a length in PROJ's plane.
+            scale = self._far() * (1e-6 if scanned[1] else 1.0)
+            axis.words = f"{name!r} in {f'm{by}, from {unit}' if scale else f'{unit}{by}'}"
+            _set_ticks(axis, (scale or 1.0) * ticks, "length" if scale else "angle")
         else:
             said = unit or attributes.get("standard_name")
             axis.words += f" in {unit}" if unit else ""
             _set_ticks(axis, ticks, "" if said else "index")
         return axis
+
+    def _scale(self, dim: str, axis: _Axis) -> meaning.AxisScale:
+        """Return the numbers along an axis of a section, in the unit in which they are read."""
+        along, letter = self._coordinate(dim), self.letters[dim][0]
+        name, attributes = (dim, {}) if along is None else (str(along.name), along.attrs)
+        unit = str(attributes.get("units", "")).strip()
+        title = str(attributes.get("long_name", "")).strip() or name
+        factor = -1.0 if "counts down" in axis.words else 1.0
+        pressure = _PRESSURES.get(unit.lower().removesuffix("s")) if letter == "z" else None
+        if pressure is not None:
+            # That of the sea has a unit of its own.
+            in_sea = unit.lower().startswith("d")
+            return meaning.AxisScale(
+                "pressure", unit if in_sea else "hPa", -pressure if in_sea else -1
+            )
+        if axis.kind == "degrees" and letter in ("x", "y"):
+            return meaning.AxisScale("longitude" if letter == "x" else "latitude", "degrees")
+        if axis.kind == "time":
+            times: Array = np.array(along.values, dtype=np.float64)
+            return meaning.AxisScale("time", self._since(times)[1])
+        if axis.kind == "length" or meaning.metres(unit) is not None:
+            if letter == "z":
+                title = "depth" if factor < 0 else "height" if axis.ticks[0] >= 0 else name
+            long = np.ptp(axis.ticks) >= _FAR
+            return meaning.AxisScale(title, "km" if long else "m", factor * (1e3 if long else 1.0))
+        unit = "" if unit == "1" or axis.kind == "index" else meaning.written(unit)
+        return meaning.AxisScale(title, unit, factor)
 
     def _heights(self, name: str, rows: Raw, attributes: Foreign, *, flat: bool) -> Raw:
         """Return heights in metres and up; other values, and all in a volume, as they are."""
@@ -971,6 +1059,9 @@ class _Reader:
             unit = georeference.DEGREE
         elif kinds == {"length"}:
             unit = "metre"
+        elif "angle" in kinds:
+            self.said.notes.append("angles of a scan without a known projection, no degrees")
+            return
         elif (
             "length" not in kinds
             and len(axes) == 2

@@ -292,6 +292,8 @@ class MapSheet:
     def is_around(self) -> bool:
         """Whether a pole is within the outline."""
         ring = self.plane.inverse(self.outline * self.metres)[:, 0]
+        # The corners of the earth as a satellite sees it are beside it.
+        ring = ring[np.isfinite(ring)]
         turns = np.sum(_turns(np.diff(ring, append=ring[:1])))
         return bool(abs(turns) > georeference.AROUND / 2)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import blocks, georeference, meaning, records
+from vizlight.mesh import blocks, georeference, meaning, records, sections
 from vizlight.mesh.polylines import by_end
 from vizlight.mesh.subdivision import by_corner
 from vizlight.vtk.cells import check_whole, connectivity
@@ -316,12 +316,14 @@ def _faces_at(mesh: pv.UnstructuredGrid, levels: Array, at: int) -> pv.PolyData:
 def stretched(mesh: pv.DataSet, factor: float, /) -> pv.DataSet:
     """Return a volume over a map in degrees in metres, its z times a factor.
 
+    A vertical section has its y times it, and pressures from 100 to 1 on by their logarithm.
+
     Parameters
     ----------
     mesh : pyvista.DataSet
         Mesh, which is not changed.
     factor : float
-        Factor of z.
+        Factor of z, of a section that of y.
 
     Returns
     -------
@@ -334,6 +336,8 @@ def stretched(mesh: pv.DataSet, factor: float, /) -> pv.DataSet:
     """
     check_dataset(mesh)
     factor = _check.positive("factor", factor)
+    if meaning.of(mesh).section:
+        return sections.stretched(mesh, factor)
     return blocks.moved(georeference.in_metres(mesh), np.zeros(3), np.array([1.0, 1.0, factor]))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight.mesh import blocks, composites, fills, meaning
+from vizlight.mesh import blocks, composites, fills, meaning, sections
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -299,12 +299,15 @@ def stretch(mesh: pv.DataSet) -> float:
     """Return the factor of z with which a volume over a map in degrees can be seen, 1 for others.
 
     Air and sea are thin beside their maps, and levels are often numbers; see :func:`exaggeration`.
+    Of a vertical section it is that of y.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
         Mesh.
     """
+    if meaning.of(mesh).section:
+        return sections.stretch(mesh)
     x, y, z = in_metres(mesh).bounds_size
     return _factor(z, math.sqrt(x * y) or max(x, y)) if has_degrees(mesh) else 1.0
 

@@ -7,7 +7,7 @@ import json
 import re
 from collections import Counter
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "ANATOMY", "MEANING", "Meaning", "along_grid", "attach", "components", "is_of_sea", "line",
-    "metres", "of", "only_vectors", "speed", "usual_unit", "vectors", "ways", "with_named",
+    "ANATOMY", "MEANING", "AxisScale", "Meaning", "along_grid", "attach", "components",
+    "is_of_sea", "line", "metres", "of", "only_vectors", "speed", "usual_unit", "vectors", "ways",
+    "with_named",
 ]  # fmt: skip
 
 #: Most distinct values of an array of kinds, such as materials or labels.
@@ -41,6 +42,27 @@ ANATOMY = {
 }  # fmt: skip
 #: Attributes of an array of a file that are kept.
 KEPT = ("standard_name", "units", "long_name", "cell_methods")
+
+
+class AxisScale(NamedTuple):
+    """Numbers along an axis, and the coordinates at which they stand.
+
+    Attributes
+    ----------
+    title : str
+        What they are; degrees of a "longitude" and of a "latitude" have words of their own.
+    unit : str
+        Their unit.
+    factor : float
+        Coordinate of 1, below 0 where the numbers fall.
+    is_log : bool
+        Whether the coordinates are in proportion to their logarithm, of base 10.
+    """
+
+    title: str
+    unit: str = ""
+    factor: float = 1.0
+    is_log: bool = False
 
 
 @dataclass
@@ -62,6 +84,8 @@ class Meaning:
         Begin and end of the time that the step stands for, none where the file does not say them.
     level : str
         Height, depth or pressure of a single layer, such as "500 hPa"; empty where none is known.
+    section : list of AxisScale
+        Scales of x and y of a vertical section, none of other grids.
     """
 
     axes: list[str] = field(default_factory=list)
@@ -70,6 +94,10 @@ class Meaning:
     time: str = ""
     span: list[float] = field(default_factory=list)
     level: str = ""
+    section: list[AxisScale] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.section = [AxisScale(*scale) for scale in self.section]
 
     def add_array(self, name: str, attributes: Foreign) -> None:
         """Keep what the attributes of an array say."""

@@ -27,6 +27,7 @@ _NAMES = {
     "lambert_azimuthal_equal_area": "laea", "albers_conical_equal_area": "aea",
     "azimuthal_equidistant": "aeqd", "mercator": "merc", "transverse_mercator": "tmerc",
     "lambert_cylindrical_equal_area": "cea", "orthographic": "ortho", "sinusoidal": "sinu",
+    "geostationary": "geos",
 }  # fmt: skip
 _KEYWORDS = {
     "latitude_of_projection_origin": "lat_0", "longitude_of_projection_origin": "lon_0",
@@ -34,6 +35,7 @@ _KEYWORDS = {
     "scale_factor_at_projection_origin": "k_0", "scale_factor_at_central_meridian": "k_0",
     "false_easting": "x_0", "false_northing": "y_0", "semi_major_axis": "a",
     "semi_minor_axis": "b", "inverse_flattening": "rf", "earth_radius": "R",
+    "perspective_point_height": "h",
 }  # fmt: skip
 #: Attributes that write a projection out.
 _WRITTEN = ("crs_wkt", "spatial_ref", "proj4", "proj4_params", "proj4text")
@@ -279,7 +281,12 @@ def of_attributes(attributes: Mapping[str, Foreign]) -> str:
     numbers |= {key: float(value) for key, value in zip(keys, parallels, strict=False)}
     if kind == "stere" and "lat_ts" in numbers:
         numbers.pop("k_0", None)
-    return " ".join([f"+proj={kind}", *(f"+{key}={word:.12g}" for key, word in numbers.items())])
+    parts = [f"+{key}={word:.12g}" for key, word in numbers.items()]
+    if kind == "geos":
+        # A mirror turns about one axis, and another one about the other.
+        fixed = {"x": "y", "y": "x"}.get(str(attributes.get("fixed_angle_axis", "")), "y")
+        parts.append(f"+sweep={attributes.get('sweep_angle_axis', fixed)}")
+    return " ".join([f"+proj={kind}", *parts])
 
 
 def _of_wrf(attributes: Mapping[str, Foreign]) -> str:

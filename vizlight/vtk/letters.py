@@ -64,7 +64,9 @@ def triangles(word: str) -> tuple[Array, Indices]:
     surface = filled.GetOutput()
     corners, _ = cells.connectivity(surface.GetPolys())
     places = cells.as_numpy(surface.GetPoints().GetData())[:, :2] if outlines else np.empty((0, 2))
-    return np.asarray(places, dtype=np.float64), corners.reshape(-1, 3)
+    # Some points of an outline are corners of no triangle.
+    used, ids = np.unique(corners, return_inverse=True)
+    return np.asarray(places[used], dtype=np.float64), ids.reshape(-1, 3)
 
 
 def width(word: str) -> float:
