@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check, files
 from vizlight._words import message, one_of
@@ -26,8 +27,6 @@ from vizlight.shading.options import LightOptions, with_joined_names
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
-    import pyvista as pv
-
     from vizlight._types import Given, Keywords
     from vizlight.looks.wishes import SceneMaker
 
@@ -230,8 +229,12 @@ def _moves(mesh: pv.DataSet, name: str | None) -> bool:
 
 
 def _kept(mesh: Step, name: str, low: float, high: float) -> Step:
-    """Return the step that keeps the cells with values in a range."""
-    present = [*mesh.run().point_data, *mesh.run().cell_data]
+    """Return the step that keeps the cells with values in a range, at all of their corners.
+
+    Labels of the points of an image are those of the pixels or voxels around them.
+    """
+    grid = mesh.run()
+    present = [*grid.point_data, *grid.cell_data]
     if name not in present:
         raise ValueError(
             message("threshold", f"the name of an array, {one_of(present)}", repr(name))
@@ -240,7 +243,14 @@ def _kept(mesh: Step, name: str, low: float, high: float) -> Step:
     ends: object = (low, high)
     if math.isinf(low) or math.isinf(high):
         ends = low if math.isinf(high) else high
-    side = {"method": "lower"} if math.isinf(low) else {}
+    side: Keywords = {"method": "lower"} if math.isinf(low) else {}
+    array = Contents(grid).named(name)
+    if name in grid.point_data:
+        has_labels = array is not None and array.role == "kinds"
+        if has_labels and isinstance(grid, pv.ImageData) and not grid.cell_data:
+            mesh = Step("voxels", ".points_to_cells", mesh)
+        else:
+            side["all_scalars"] = True
     step = Step("kept", ".threshold", mesh, ends, scalars=name, **side)
     step.asked = ("threshold", f"{name}, {low:g} to {high:g}")
     return step
