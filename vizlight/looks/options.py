@@ -133,17 +133,22 @@ def cut(mesh: Step, wishes: Wishes) -> Step:
 def layer(mesh: Step, wishes: Wishes) -> Step:
     """Return the step that takes the lowest layer of a volume over a map, the highest of a sea.
 
-    A volume is left as it is where a question or a part of it was asked for.
+    Of other volumes that are thin enough for a map it is the highest, which is seen from above. A
+    volume is left as it is where a question or a part of it was asked for.
     """
     grid, part = mesh.run(), wishes.part
     of_volume = ("contour", "slice", "clip", "threshold")
     is_chosen = wishes.question != "auto" or any(part.get(name) for name in of_volume)
-    if is_chosen or not georeference.is_map(grid):
+    if is_chosen:
+        return mesh
+    is_map = georeference.is_map(grid)
+    if not is_map and not _is_slab(Contents(grid)):
         return mesh
     count = files.layers(grid)
     words = meaning.of(grid).axes
-    sea = meaning.is_of_sea(" ".join(words[2:]), grid.bounds[5])
-    order = range(count - 1, -1, -1) if sea else range(count)
+    is_sea = meaning.is_of_sea(" ".join(words[2:]), grid.bounds[5])
+    from_top = is_sea or not is_map
+    order = range(count - 1, -1, -1) if from_top else range(count)
     for at in order:
         taken = Step("layer", "files.layer_of", mesh, at)
         # The wind across the ground is 0: a layer without data shows nothing.
@@ -152,9 +157,15 @@ def layer(mesh: Step, wishes: Wishes) -> Step:
     else:
         return mesh
     height = abs(float(np.nanmean(taken.run().points[:, 2])))
-    which = ("highest" if sea else "lowest") + " with data" * (at != order[0])
+    which = ("highest" if from_top else "lowest") + " with data" * (at != order[0])
     taken.note = f"the {which} of {count} layers is shown, at {height:g} along z"
     return taken
+
+
+def _is_slab(contents: Contents) -> bool:
+    """Return whether a volume of several layers is so thin that it is drawn as a map."""
+    is_flat = contents.dimension == 3 and contents.flat_axis == 2
+    return is_flat and files.layers(contents.mesh) > 2
 
 
 #: Parts of a map, and questions, for which it stays in degrees.
