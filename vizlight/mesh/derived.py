@@ -41,7 +41,7 @@ def surface_of(
     mesh: pv.DataSet | pv.MultiBlock,
     /,
     contour: str | None = None,
-    level: float | None = None,
+    level: float | Sequence[float] | None = None,
     labels: str | None = None,
 ) -> pv.PolyData:
     """Return an isosurface of a mesh, the boundary of labels, or its outer surface.
@@ -52,8 +52,9 @@ def surface_of(
         Mesh, which is not changed.
     contour : str, optional
         Name of an array of one component; one of cells is averaged to the points.
-    level : float, optional
-        Value of the array on the isosurface. Default: the middle of its range.
+    level : float or sequence of float, optional
+        Value of the array on the isosurface, or those on several of them. Default: the middle of
+        its range.
     labels : str, optional
         Name of an array of labels, which are then those of the cells. In an image that fills space,
         such as an atlas of a brain, they are whole numbers of which 0 is the ground: the surface of
@@ -86,11 +87,12 @@ def surface_of(
     if not finite.size:
         raise ValueError(_check.message("contour", "an array with finite values", repr(contour)))
     low, high = float(finite.min()), float(finite.max())
-    level = (low + high) / 2 if level is None else _check.number("level", level)
-    surface = blocks.isosurface(mesh, contour, level)
+    levels = np.ravel((low + high) / 2 if level is None else level).tolist()
+    surface = blocks.isosurface(mesh, contour, *(_check.number("level", each) for each in levels))
     if not surface.n_points:
         expected = f"a value between {low:g} and {high:g}"
-        raise ValueError(_check.message("level", expected, f"{level:g}"))
+        got = ", ".join(f"{each:g}" for each in levels)
+        raise ValueError(_check.message("level", expected, got))
     # Beside a hole VTK makes faces with corners that are nowhere.
     there: Foreign = np.isfinite(np.asarray(surface.points)).all(axis=1)
     return surface if there.all() else _kept_points(surface, there)
