@@ -192,3 +192,12 @@ def test_a_map_of_densities_has_a_level_of_2_deviations_where_nothing_is_steeper
     assert look.shown == "isosurface"
     assert look.mesh.clean().n_open_edges == 0
     assert look.drawing.layers[-1].mesh.path == "render.box_axes"
+
+
+def test_borders_of_an_isosurface_are_as_light_as_its_box_and_it_has_no_creases():
+    grid = pv.ImageData(dimensions=(12,) * 3)
+    grid["T"] = np.abs(grid.points - 5).sum(axis=1)
+    look = vizlight.look(grid, contour="T", level=6.0)
+    colors = {layer.mesh.name: layer.keywords["color"] for layer in look.drawing.layers[1:2]}
+    assert colors == {"borders": "gray"}
+    assert "creases" not in [layer.mesh.name for layer in look.drawing.layers]
