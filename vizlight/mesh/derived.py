@@ -26,7 +26,7 @@ __all__ = ["layer_of", "layers", "stretched", "surface_of", "warped", "with_vect
 #: smoothed: that of a ball is 0.6, of a bar two voxels wide 0.23.
 THIN = 0.25
 #: Cells with a face below and one above.
-PRISMS = {pv.CellType.WEDGE, pv.CellType.HEXAHEDRON}
+PRISMS = {pv.CellType.WEDGE, pv.CellType.HEXAHEDRON, pv.CellType.VOXEL}
 
 
 def check_dataset(mesh: object) -> None:
