@@ -24,15 +24,17 @@ SHEET: Sides = (9, 7, 1)
 VOLUME: Sides = (25, 25, 25)
 
 
-def _series(folder: Path, arrays: list[dict[str, np.ndarray]], sides: Sides = SHEET) -> Path:
+def _series(
+    folder: Path, arrays: list[dict[str, np.ndarray]], sides: Sides = SHEET, thickness: float = 1.0
+) -> Path:
     """Write the steps of a grid as a collection, and return its path."""
     rows = []
     for i, step in enumerate(arrays):
-        grid = pv.ImageData(dimensions=sides)
+        grid = pv.ImageData(dimensions=sides, spacing=(1.0, 1.0, thickness))
         for name, values in step.items():
             grid.point_data[name] = values
-        grid.save(folder / f"step{i}.vti")
-        rows.append(f'<DataSet timestep="{i / 2}" part="0" file="step{i}.vti"/>')
+        grid.cast_to_structured_grid().save(folder / f"step{i}.vts")
+        rows.append(f'<DataSet timestep="{i / 2}" part="0" file="step{i}.vts"/>')
     path = folder / "series.pvd"
     collection = f"<Collection>{''.join(rows)}</Collection>"
     path.write_text(f'<VTKFile type="Collection" version="0.1">{collection}</VTKFile>')
@@ -73,6 +75,13 @@ def test_all_steps_have_the_range_of_all(warming: Path, tmp_path: Path) -> None:
     assert every.min() - spare <= low <= every.min()
     assert every.max() <= high <= every.max() + spare
     assert options["array"] == "T"
+
+
+def test_the_range_of_all_steps_is_that_of_the_layer_that_is_shown(tmp_path: Path) -> None:
+    x, _, z = pv.ImageData(dimensions=(9, 7, 3)).points.T
+    steps = [{"T": 20.0 + k + x / 8 + 100 * (z - 2)} for k in range(3)]
+    look = vizlight.look(_series(tmp_path, steps, (9, 7, 3), 0.01), size=SIZE)
+    assert _options(look, tmp_path / "x.gif")["clim"] == (20, 23)
 
 
 def test_a_movie_has_one_picture_for_each_step_of_values(warming: Path, tmp_path: Path) -> None:

@@ -411,6 +411,28 @@ def test_components_in_two_files_are_one_vector(tmp_path):
     assert vizlight.look([paths[0], paths[0]], size=(300, 200)).array == "a"
 
 
+def test_colours_of_a_thin_volume_from_above_are_those_of_its_highest_layer():
+    slab = pv.ImageData(dimensions=(20, 12, 4), spacing=(1, 1, 0.02))
+    slab["T"] = 20 + slab.points[:, 0] / 19 + 300 * (slab.points[:, 2] - 0.06)
+    look = vizlight.look(slab)
+    assert "the highest of 4 layers is shown, at 0.06 along z" in look.notes
+    assert look.drawing.keys[0]["clim"] == (20, 21)
+    # What is asked for is of the whole volume.
+    assert vizlight.look(slab, "value").mesh.bounds.z_min == 0
+
+
+def test_a_threshold_keeps_voxels_of_labels_and_cells_with_all_corners_in_the_range():
+    image = pv.ImageData(dimensions=(9, 9, 9))
+    labels = np.zeros((9, 9, 9), np.uint8)
+    labels[1:8, 4, 4] = 255
+    image["label"], image["x"] = labels.ravel(order="F"), image.points[:, 0] / 10
+    bar = vizlight.look(image, threshold=[("label", 200, np.inf)]).mesh
+    np.testing.assert_allclose(bar.bounds, (0.5, 7.5, 3.5, 4.5, 3.5, 4.5))
+    for low, high in ((0.25, np.inf), (-np.inf, 0.45), (0.25, 0.45)):
+        kept = vizlight.look(image, "shape", threshold=[("x", low, high)]).mesh
+        assert kept.bounds[:2] == (3 if low > 0 else 0, 4 if high < 9 else 8)
+
+
 def test_a_level_needs_the_array_that_it_is_one_of():
     with pytest.raises(ValueError, match="level: expected contour= with it, got it alone"):
         vizlight.look(pv.ImageData(dimensions=(3, 3, 3)), level=2)

@@ -7,7 +7,7 @@ import pyvista as pv
 import vizlight
 from vizlight.draw.margins import parted
 from vizlight.looks.recipes import volumes
-from vizlight.mesh import meaning
+from vizlight.mesh import density_maps, meaning
 
 
 def volume(noise=0.0, count=24):
@@ -158,3 +158,46 @@ def test_both_signs_of_an_orbital_are_shown():
     np.testing.assert_allclose(np.unique(look.mesh["psi"]), [-level, level], rtol=1e-6)
     grid["psi"] = np.abs(grid["psi"])
     assert "±" not in vizlight.look(grid).summary
+
+
+def test_a_level_of_both_signs_is_shown_where_0_is_the_ground():
+    grid = pv.ImageData(dimensions=(32,) * 3, origin=(-15.5,) * 3)
+    x, y, z = grid.points.T
+    below, above = (np.tanh(2 - np.sqrt((x - side) ** 2 + y**2 + z**2) / 2) + 1 for side in (-6, 6))
+    # Statistics of a brain, which is no scan of one.
+    grid["t"] = above - below
+    meaning.attach(grid, meaning.Meaning(axes=[*meaning.ANATOMY]))
+    look = vizlight.look(grid)
+    low, high = np.unique(look.mesh["t"])
+    assert low == -high
+    assert f"isosurface t = ±{high:.4g} " in look.summary
+    np.testing.assert_array_equal(np.sign(look.mesh.points[:, 0]), np.sign(look.mesh["t"]))
+    # A lobe of one sign, and a distance with 0 on its surface, have one isosurface.
+    for values in (above - 0.01 * below, above - 1):
+        meaning.attach(grid, meaning.Meaning())
+        grid["t"] = values
+        assert "±" not in vizlight.look(grid).summary
+
+
+def test_a_map_of_densities_has_a_level_of_2_deviations_where_nothing_is_steeper(monkeypatch):
+    monkeypatch.setattr(volumes.levels, "GOOD", 1e9)
+    grid = volume(count=40)
+    grid["T"] = np.sin(9 * grid.points).prod(axis=1)
+    assert vizlight.look(grid).shown == "slices"
+    words = {"long_name": density_maps.WORDS}
+    meaning.attach(grid, meaning.Meaning(arrays={"T": words}))
+    look = vizlight.look(grid)
+    level = grid["T"].mean() + 2 * grid["T"].std()
+    np.testing.assert_allclose(look.mesh["T"], level, rtol=0.01)
+    assert look.shown == "isosurface"
+    assert look.mesh.clean().n_open_edges == 0
+    assert look.drawing.layers[-1].mesh.path == "render.box_axes"
+
+
+def test_borders_of_an_isosurface_are_as_light_as_its_box_and_it_has_no_creases():
+    grid = pv.ImageData(dimensions=(12,) * 3)
+    grid["T"] = np.abs(grid.points - 5).sum(axis=1)
+    look = vizlight.look(grid, contour="T", level=6.0)
+    colors = {layer.mesh.name: layer.keywords["color"] for layer in look.drawing.layers[1:2]}
+    assert colors == {"borders": "gray"}
+    assert "creases" not in [layer.mesh.name for layer in look.drawing.layers]

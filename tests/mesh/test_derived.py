@@ -135,6 +135,20 @@ def test_labels_of_an_image():
         files.surface_of(image, labels="a")
 
 
+def test_a_thin_label_of_an_image_keeps_its_voxels_and_a_thick_one_is_smooth():
+    image = pv.ImageData(dimensions=(16, 16, 16), spacing=(0.5, 0.5, 0.5))
+    labels = np.zeros((16, 16, 16), np.uint8)
+    labels[3:13, 13, 13] = 2
+    labels[np.linalg.norm(np.indices(labels.shape) - 5.0, axis=0) < 4.6] = 7
+    image["c"] = labels.ravel(order="F")
+    found = files.surface_of(image, labels="c")
+    faces = found.compute_cell_sizes()["Area"]
+    # The bar has the faces of ten voxels, and the ball not much more than the area of one.
+    assert faces[found["c"] == 2].sum() == pytest.approx(0.25 * (4 * 10 + 2))
+    ball = 4 * np.pi * (0.5 * 4.6) ** 2
+    assert 0.7 * ball < faces[found["c"] == 7].sum() < 1.1 * ball
+
+
 @pytest.mark.parametrize("turn", [np.diag([-1.0, -1, 1]), [[0, -1, 0], [1, 0, 0], [0, 0, 1]]])
 def test_an_isosurface_of_an_image_whose_rows_run_elsewhere_is_at_its_place(turn):
     image = pv.ImageData(dimensions=(20, 24, 16), spacing=(1, 2, 1), origin=(5, 6, 7))

@@ -10,6 +10,7 @@ import numpy as np
 import vizlight
 from vizlight import _check, files
 from vizlight.draw import movie
+from vizlight.looks import options as look_options
 from vizlight.looks.options import READ
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.recipes import fields
@@ -328,7 +329,9 @@ def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str)
     """Return the colour map and the range that suit the values of an array at all steps."""
     values, vectors = [], False
     for time in times:
-        mesh = Step("", read.path, *read.arguments, **read.keywords | {"time": time}).run()
+        step = Step("", read.path, *read.arguments, **read.keywords | {"time": time})
+        # Of a volume that is shown as a map, one layer is seen.
+        mesh = look_options.layer(step, look.wishes).run()
         if "," in array:
             mesh = files.with_vectors(mesh, array)
         if array not in mesh.array_names:

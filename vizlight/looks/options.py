@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check, files
 from vizlight._words import message, one_of
@@ -26,8 +27,6 @@ from vizlight.shading.options import LightOptions, with_joined_names
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
-    import pyvista as pv
-
     from vizlight._types import Given, Keywords
     from vizlight.looks.wishes import SceneMaker
 
@@ -134,17 +133,22 @@ def cut(mesh: Step, wishes: Wishes) -> Step:
 def layer(mesh: Step, wishes: Wishes) -> Step:
     """Return the step that takes the lowest layer of a volume over a map, the highest of a sea.
 
-    A volume is left as it is where a question or a part of it was asked for.
+    Of other volumes that are thin enough for a map it is the highest, which is seen from above. A
+    volume is left as it is where a question or a part of it was asked for.
     """
     grid, part = mesh.run(), wishes.part
     of_volume = ("contour", "slice", "clip", "threshold")
     is_chosen = wishes.question != "auto" or any(part.get(name) for name in of_volume)
-    if is_chosen or not georeference.is_map(grid):
+    if is_chosen:
+        return mesh
+    is_map = georeference.is_map(grid)
+    if not is_map and not _is_slab(Contents(grid)):
         return mesh
     count = files.layers(grid)
     words = meaning.of(grid).axes
-    sea = meaning.is_of_sea(" ".join(words[2:]), grid.bounds[5])
-    order = range(count - 1, -1, -1) if sea else range(count)
+    is_sea = meaning.is_of_sea(" ".join(words[2:]), grid.bounds[5])
+    from_top = is_sea or not is_map
+    order = range(count - 1, -1, -1) if from_top else range(count)
     for at in order:
         taken = Step("layer", "files.layer_of", mesh, at)
         # The wind across the ground is 0: a layer without data shows nothing.
@@ -153,9 +157,15 @@ def layer(mesh: Step, wishes: Wishes) -> Step:
     else:
         return mesh
     height = abs(float(np.nanmean(taken.run().points[:, 2])))
-    which = ("highest" if sea else "lowest") + " with data" * (at != order[0])
+    which = ("highest" if from_top else "lowest") + " with data" * (at != order[0])
     taken.note = f"the {which} of {count} layers is shown, at {height:g} along z"
     return taken
+
+
+def _is_slab(contents: Contents) -> bool:
+    """Return whether a volume of several layers is so thin that it is drawn as a map."""
+    is_flat = contents.dimension == 3 and contents.flat_axis == 2
+    return is_flat and files.layers(contents.mesh) > 2
 
 
 #: Parts of a map, and questions, for which it stays in degrees.
@@ -230,8 +240,12 @@ def _moves(mesh: pv.DataSet, name: str | None) -> bool:
 
 
 def _kept(mesh: Step, name: str, low: float, high: float) -> Step:
-    """Return the step that keeps the cells with values in a range."""
-    present = [*mesh.run().point_data, *mesh.run().cell_data]
+    """Return the step that keeps the cells with values in a range, at all of their corners.
+
+    Labels of the points of an image are those of the pixels or voxels around them.
+    """
+    grid = mesh.run()
+    present = [*grid.point_data, *grid.cell_data]
     if name not in present:
         raise ValueError(
             message("threshold", f"the name of an array, {one_of(present)}", repr(name))
@@ -240,7 +254,14 @@ def _kept(mesh: Step, name: str, low: float, high: float) -> Step:
     ends: object = (low, high)
     if math.isinf(low) or math.isinf(high):
         ends = low if math.isinf(high) else high
-    side = {"method": "lower"} if math.isinf(low) else {}
+    side: Keywords = {"method": "lower"} if math.isinf(low) else {}
+    array = Contents(grid).named(name)
+    if name in grid.point_data:
+        has_labels = array is not None and array.role == "kinds"
+        if has_labels and isinstance(grid, pv.ImageData) and not grid.cell_data:
+            mesh = Step("voxels", ".points_to_cells", mesh)
+        else:
+            side["all_scalars"] = True
     step = Step("kept", ".threshold", mesh, ends, scalars=name, **side)
     step.asked = ("threshold", f"{name}, {low:g} to {high:g}")
     return step

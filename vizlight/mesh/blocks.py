@@ -217,15 +217,15 @@ def _copied(mesh: DataSetT) -> DataSetT:
     return made
 
 
-def isosurface(mesh: pv.DataSet, name: str, level: float) -> pv.PolyData:
-    """Return an isosurface where it belongs: VTK forgets in which directions the rows run."""
+def isosurface(mesh: pv.DataSet, name: str, *levels: float) -> pv.PolyData:
+    """Return isosurfaces where they belong: VTK forgets in which directions the rows run."""
     if not isinstance(mesh, pv.ImageData) or np.allclose(mesh.direction_matrix, np.eye(3)):
-        found: pv.PolyData = mesh.contour([level], scalars=name)
+        found: pv.PolyData = mesh.contour(levels, scalars=name)
         return found
     turned = np.asarray(mesh.direction_matrix, dtype=np.float64)
     straight = mesh.copy(deep=False)
     straight.direction_matrix = np.eye(3)
-    found = straight.contour([level], scalars=name)
+    found = straight.contour(levels, scalars=name)
     if found.n_points:
         origin = np.asarray(mesh.origin)
         places = (np.asarray(found.points, dtype=np.float64) - origin) @ turned.T + origin

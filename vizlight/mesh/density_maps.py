@@ -7,12 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from vizlight.mesh import meaning
+
 if TYPE_CHECKING:
     from pathlib import Path
 
     from vizlight._types import Foreign
 
 SUFFIXES = (".mrc", ".ccp4", ".map")
+#: Name of the densities in words.
+WORDS = "density map"
 #: Words of the header, counted from 1: first node along the axes, nodes along the edges of the
 #: cell, and place of the first node.
 _FIRST, _NODES, _PLACE = (5, 6, 7), (8, 9, 10), (50, 51, 52)
@@ -59,4 +63,5 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
         grid.points = (edges @ rows).T + first
         grid.dimensions = values.shape
     grid.point_data["density"] = values.ravel(order="F")
+    meaning.attach(grid, meaning.Meaning(arrays={"density": {"long_name": WORDS}}))
     return grid

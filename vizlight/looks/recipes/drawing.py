@@ -48,6 +48,8 @@ THIN = 1.5 / (85 / 25.4 * 300)
 ONLY = "#4477aa"
 #: Colour of the borders of surfaces, and keywords of what stands beside the data.
 DARK, BESIDE = "#333333", {"pickable": False}
+#: Keywords of the edges of a box, and of what it cuts.
+BOX_EDGES: Keywords = {"color": "gray", "line_width": 1}
 #: Keywords that take the edges of a surface that are its borders.
 BORDERS = {
     "boundary_edges": True, "feature_edges": False, "manifold_edges": False,
@@ -234,6 +236,11 @@ class Case:
             return self.data
         return Step("surface", "files.surface_of", self.data)
 
+    @property
+    def is_isosurface(self) -> bool:
+        """Whether the mesh is an isosurface of a volume."""
+        return self.wishes.part.get("contour") is not None
+
     @cached_property
     def borders(self) -> Step | None:
         """Step that takes the borders of an open surface that bends, None where it has none."""
@@ -247,8 +254,11 @@ class Case:
 
     @cached_property
     def creases(self) -> Step | None:
-        """Step that takes the creases of a surface, None where it has none that are meant."""
-        if not isinstance(self.surface.run(), pv.PolyData):
+        """Step that takes the creases of a surface, None where it has none that are meant.
+
+        Those of an isosurface come of noise, or of the size of its cells.
+        """
+        if self.is_isosurface or not isinstance(self.surface.run(), pv.PolyData):
             return None
         edges = Step("creases", "files.creases", self.surface)
         return edges if edges.run().n_cells else None
@@ -264,6 +274,9 @@ class Case:
     def edges(self, camera: Step) -> list[Layer]:
         """Return the layers of the borders and creases of the surface, and of its box."""
         drawn: Keywords = {"color": DARK, "line_width": self.width, "lighting": False, **BESIDE}
+        if self.is_isosurface:
+            # Its borders are where the box of the volume cuts it, and no part of its shape.
+            drawn |= BOX_EDGES
         every = [self.borders, self.creases]
         layers = [Layer(lines, drawn, live=False) for lines in every if lines is not None]
         return layers if self.box is None else [*layers, *self.boxed(self.box, camera)]
@@ -278,8 +291,8 @@ class Case:
         camera : Step
             Step of the camera, set by :meth:`camera` on the data in the box.
         """
-        edges: Keywords = {"color": "gray", "line_width": 1, **BESIDE}
-        layers = [Layer(Step("", "render.box_edges", box, camera), edges, live=False)]
+        edges = Step("", "render.box_edges", box, camera)
+        layers = [Layer(edges, BOX_EDGES | BESIDE, live=False)]
         if self.wishes.frame is None:
             layers.append(self.words(self.wishes.box_axes(box, camera)))
         return layers

@@ -13,10 +13,15 @@ from vizlight.looks import levels
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import eye_around
 from vizlight.looks.recipes import fields, surfaces
-from vizlight.looks.recipes.drawing import LIGHTNESS, Doubt, Drawing, Layer, range_of
+from vizlight.looks.recipes.drawing import (
+    LIGHTNESS,
+    Doubt,
+    Drawing,
+    Layer,
+    range_of,
+)
 from vizlight.looks.steps import Step
-from vizlight.maps import TWO_SIDED
-from vizlight.mesh import meaning
+from vizlight.mesh import density_maps, meaning
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
@@ -34,9 +39,16 @@ AIR, BONE, NEAR_AIR, MUCH_AIR, BONES = -1000.0, 300.0, 50.0, 0.05, (0.002, 0.3)
 #: Share of a scan that has its lowest value from which on an organ was cut out of it, and the
 #: number of values that are looked at.
 CUT_OUT, SAMPLE = 0.5, 100_000
-#: Share of values that are below half of a level from which others are lobes in empty space, and
-#: the colours of those below and above 0.
-EMPTY, LOBES = 0.5, ["#4169cf", "#d63a3a"]
+#: Largest share of the ends of values within which their quartiles lie where 0 is their ground, and
+#: least ratio of the numbers of values beyond a level below and above it.
+GROUND, LESSER_SIDE = 0.15, 0.1
+#: Colours of a level below and above 0.
+LOBES = ["#4169cf", "#d63a3a"]
+#: Level of maps of densities above their mean, in their standard deviations, where nothing is
+#: steeper: crystallographers take 1 to 3.
+SIGMAS = 2.0
+#: Note on a scan that is smoothed.
+SMOOTHED = "the values are smoothed by one voxel"
 #: Share of its range through which a second array runs on an isosurface that shows it.
 LEAST_SPREAD = 0.02
 #: Most pieces of an isosurface, where none has this share of it.
@@ -54,77 +66,113 @@ def isosurface(case: Case) -> Drawing:
     else slices, unless an organ was cut out before.
     """
     array = case.needed_array
+    if case.wishes.question == "auto" and (drawing := _both_signs(case, array)) is not None:
+        return drawing
     notes, has_bones = [], False
-    if _is_scan(case, array):
+    level, contrast = levels.best_level(case.data.run(), array.name)
+    # What stands out, such as a particle, is as that of a scan; that of a crystal is at its place.
+    is_density = contrast < levels.GOOD and _is_density(case, array)
+    is_scan = not is_density and _is_scan(case, array)
+    if is_scan:
         values = _sample(case, array)
         has_bones = _has_bones(values)
         is_whole = np.mean(values == values.min()) < CUT_OUT
         if case.wishes.question == "auto" and is_whole and not has_bones and _is_of_body(case):
             return slices(case)
-        # The edge of a mask would be a staircase of voxels.
-        smooth = Step("smooth", ".gaussian_smooth", case.data, std_dev=1.0, scalars=array.name)
-        case = replace(case, data=smooth)
-        notes = ["the values are smoothed by one voxel"]
-    volume = case.data
-    level, contrast = levels.best_level(case.data.run(), array.name)
+        case = replace(case, data=_smoothed(case, array))
+        notes = [SMOOTHED]
+        level, contrast = levels.best_level(case.data.run(), array.name)
     if has_bones:
         level, contrast = BONE, levels.GOOD
         notes.append("bone, by the numbers of computed tomography, in which air is -1000")
+    elif is_density:
+        values = _sample(case, array)
+        level, contrast = float(f"{values.mean() + SIGMAS * values.std():.2g}"), levels.GOOD
+        notes = [f"the level is {SIGMAS:g} standard deviations above the mean"]
     if contrast < levels.GOOD:
         steepest = f"the steepest is {contrast:.1f} times the mean"
         return slices(case, f"; no isosurface stands out ({steepest})")
     whole = case
-    part = dict(case.wishes.part) | {"contour": array.name, "level": level}
-    closed = _closed(case.data, array.name, level) if notes else case.data
-    mesh = replace(case.wishes, part=part).isosurface(closed)
-    ends = (-abs(level), abs(level))
-    has_lobes = case.wishes.question == "auto" and _has_lobes(case, array, level)
-    if has_lobes:
-        mesh = Step("surface", ".contour", case.data, [*ends], scalars=array.name)
-    if case.wishes.question == "auto" and _is_crumbs(mesh.run()):
+    wishes = replace(
+        case.wishes, part=dict(case.wishes.part) | {"contour": array.name, "level": level}
+    )
+    is_closed = is_scan or (is_density and isinstance(case.data.run(), pv.ImageData))
+    mesh = wishes.isosurface(_closed(case.data, array.name, level) if is_closed else case.data)
+    is_free = wishes.question == "auto" and not is_density
+    if is_free and _is_crumbs(mesh.run()):
         return slices(whole, "; isosurfaces are crumbs")
-    contents = Contents(mesh.run())
-    wishes = replace(case.wishes, part=part)
-    # The box tells where the isosurface is; one that is much larger would make it small.
-    box = Step("box", ".outline", volume)
-    around = max(contents.sides) > LEAST_OF_BOX * max(case.contents.sides)
-    if around and wishes.view is None and wishes.frame is None:
-        eye = eye_around(mesh.run())
-        frame = wishes.camera(mesh if notes else box, eye, boxed=not notes)
-        wishes = replace(wishes, frame=frame)
+    case, box = _framed(replace(case, wishes=wishes), mesh, boxed=not is_scan)
     words = f"isosurface {array.name} = {levels.number(level)}"
-    second = _second(case, mesh.run())
-    if has_lobes:
-        words, second = f"isosurface {array.name} = ±{levels.number(ends[1])}", array
-        wishes = replace(wishes, picture={"cmap": LOBES, "clim": ends} | dict(wishes.picture))
-    case = replace(case, data=mesh, contents=contents, wishes=wishes)
+    second = _second(whole, mesh.run())
     if second is None or case.wishes.question == "shape":
         figure = "shape"
         drawing = surfaces.surface(replace(case, question="shape"))
     else:
         figure = "value"
         drawing = surfaces.values(replace(case, question="value", array=second))
-        words += "" if has_lobes else f" in the colours of {second.name}"
-    if has_lobes:
-        title, unit = parted(str(drawing.keys[0]["title"]))
-        title = f"{title} = ±{levels.number(ends[1])} {unit}".rstrip()
-        key = drawing.keys[0] | {"title": title, "levels": [ends[0], 0.0, ends[1]]}
-        drawing = replace(drawing, keys=[key])
+        words += f" in the colours of {second.name}"
     drawing = replace(drawing, words=words, notes=[*drawing.notes, *notes])
-    if wishes.question == "auto" and _is_rough(case, mesh, drawing.camera):
+    if is_free and _is_rough(case, mesh, drawing.camera):
         drawing = replace(drawing, doubt=Doubt((figure,), lambda: slices(whole)))
-    if notes or not around:
-        return drawing
-    return replace(drawing, layers=[*drawing.layers, *whole.boxed(box, drawing.camera)])
+    layers = [] if box is None else whole.boxed(box, drawing.camera)
+    return replace(drawing, layers=[*drawing.layers, *layers])
 
 
-def _has_lobes(case: Case, array: Named, level: float) -> bool:
-    """Return whether values are as far below 0 as above it, as an orbital's, and near it mostly."""
+def _both_signs(case: Case, array: Named) -> Drawing | None:
+    """Return the drawing of the isosurfaces at a level above and below 0.
+
+    None where 0 is not the ground of values of both signs, as it is of orbitals and statistics.
+    """
     values = _sample(case, array)
-    if array.of_cells or not len(values):
-        return False
-    low, high = sorted((-float(values.min()), float(values.max())))
-    return low >= TWO_SIDED * high > 0 and float(np.mean(np.abs(values) < abs(level) / 2)) > EMPTY
+    if array.of_cells or not values.size or not values.min() < 0 < values.max():
+        return None
+    if np.abs(np.percentile(values, (25, 75))).max() > GROUND * np.abs(values).max():
+        return None
+    is_scan = _is_scan(case, array)
+    data = _smoothed(case, array) if is_scan else case.data
+    rows = np.asarray(data.run()[array.name], dtype=np.float64)
+    sizes = data.run().copy(deep=False)
+    sizes.point_data[array.name] = np.abs(rows)
+    level, contrast = levels.best_level(sizes, array.name)
+    lesser, larger = sorted((np.sum(rows < -level), np.sum(rows > level)))
+    if contrast < levels.GOOD or lesser < LESSER_SIDE * larger:
+        return None
+    ends = (-level, level)
+    part = dict(case.wishes.part) | {"contour": array.name, "level": ends}
+    picture = {"cmap": LOBES, "clim": ends} | dict(case.wishes.picture)
+    whole = replace(case, data=data, wishes=replace(case.wishes, part=part, picture=picture))
+    padded = Step("closed", ".pad_image", data, pad_value=0.0, scalars=array.name)
+    mesh = whole.wishes.isosurface(padded if is_scan else data)
+    surface, box = _framed(whole, mesh, boxed=not is_scan)
+    drawing = surfaces.values(replace(surface, question="value", array=array))
+    title, unit = parted(str(drawing.keys[0]["title"]))
+    title = f"{title} = ±{levels.number(level)} {unit}".rstrip()
+    key = drawing.keys[0] | {"title": title, "levels": [-level, 0.0, level]}
+    notes = [*drawing.notes, *[SMOOTHED] * is_scan]
+    layers = [] if box is None else whole.boxed(box, drawing.camera)
+    words = f"isosurface {array.name} = ±{levels.number(level)}"
+    return replace(drawing, words=words, keys=[key], notes=notes, layers=[*drawing.layers, *layers])
+
+
+def _smoothed(case: Case, array: Named) -> Step:
+    """Return the step that smooths a scan: the edge of a mask would be a staircase of voxels."""
+    return Step("smooth", ".gaussian_smooth", case.data, std_dev=1.0, scalars=array.name)
+
+
+def _framed(case: Case, mesh: Step, *, boxed: bool) -> tuple[Case, Step | None]:
+    """Return the case of an isosurface in a volume, and the box that tells where it is.
+
+    There is no box where none is asked for, nor one that is much larger, which would make the
+    isosurface small.
+    """
+    contents, wishes = Contents(mesh.run()), case.wishes
+    box = Step("box", ".outline", case.data)
+    around = max(contents.sides) > LEAST_OF_BOX * max(case.contents.sides)
+    if around and wishes.view is None and wishes.frame is None:
+        eye = eye_around(mesh.run())
+        wishes = replace(wishes, frame=wishes.camera(box if boxed else mesh, eye, boxed=boxed))
+    case = replace(case, data=mesh, contents=contents, wishes=wishes)
+    return case, box if boxed and around else None
 
 
 def _closed(image: Step, name: str, level: float) -> Step:
@@ -218,3 +266,9 @@ def _is_scan(case: Case, array: Named) -> bool:
         and len(case.contents.arrays) == 1
         and min(mesh.dimensions) > VOXELS
     )
+
+
+def _is_density(case: Case, array: Named) -> bool:
+    """Return whether values are densities by crystallography or electron microscopy."""
+    words = meaning.of(case.data.run()).arrays.get(array.name, {})
+    return words.get("long_name") == density_maps.WORDS
