@@ -77,7 +77,7 @@ def isosurface(case: Case) -> Drawing:
         values = _sample(case, array)
         has_bones = _has_bones(values)
         is_whole = np.mean(values == values.min()) < CUT_OUT
-        if case.wishes.question == "auto" and is_whole and not has_bones and _is_of_body(case):
+        if case.wishes.question == "auto" and is_whole and not has_bones and case.is_of_body:
             return slices(case)
         case = replace(case, data=_smoothed(case, array))
         notes = [SMOOTHED]
@@ -218,7 +218,7 @@ def slices(case: Case, why: str = "") -> Drawing:
     array = case.needed_array
     values = _sample(case, array)
     # As radiologists print them.
-    is_gray = _is_air(values).any() if np.any(values < 0) else _is_of_body(case)
+    is_gray = _is_air(values).any() if np.any(values < 0) else case.is_of_body
     mesh = Step("slices", ".slice_orthogonal", case.data)
     mesh = Step("joined", ".combine", mesh)
     mesh = Step("slices", ".extract_surface", mesh, algorithm="dataset_surface")
@@ -250,11 +250,6 @@ def _has_bones(values: Array) -> bool:
     """Return whether a scan has much air and some bone by the numbers of computed tomography."""
     bones = float(np.mean(values > BONE))
     return float(np.mean(_is_air(values))) > MUCH_AIR and BONES[0] < bones < BONES[1]
-
-
-def _is_of_body(case: Case) -> bool:
-    """Return whether a file says that axes are those of a body."""
-    return meaning.ways(case.data.run()) == (*meaning.ANATOMY.values(),)
 
 
 def _is_scan(case: Case, array: Named) -> bool:
