@@ -119,7 +119,7 @@ def isosurface(case: Case) -> Drawing:
 
 
 def _both_signs(case: Case, array: Named) -> Drawing | None:
-    """Return the drawing of the isosurfaces at a level above and below 0.
+    """Return the drawing of the isosurfaces at a level of both signs.
 
     None where 0 is not the ground of values of both signs, as it is of orbitals and statistics.
     """
