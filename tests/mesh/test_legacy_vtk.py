@@ -108,3 +108,23 @@ def test_polyhedra_of_legacy_files_have_whole_faces(tmp_path, binary):
     kind = (b"\n10\n", b"\n42\n") if not binary else (b"\0\0\0\n", b"\0\0\0*")
     path.write_bytes(kind[1].join(text.rsplit(kind[0], 1)))
     assert short_files.missing_part(path) == "cell 0 is no polyhedron of whole faces"
+
+
+@pytest.mark.parametrize(
+    ("kind", "word", "is_held"),
+    [("float", "1e60", False), ("float", "-inf", True), ("double", "1e60", True),
+     ("double", "1e999", False), ("int", "99999999999", False), ("short", "-32768", True)],
+)  # fmt: skip
+def test_numbers_that_a_type_does_not_hold_are_refused(tmp_path, kind, word, is_held):
+    """VTK ends the process at them."""
+    path = tmp_path / "a.vtk"
+    path.write_text(
+        "# vtk DataFile Version 5.1\na\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"
+        "0 0 0 1 0 0 0 1 0\nPOINT_DATA 3\nFIELD FieldData 1\n"
+        f"pair 2 3 {kind}\n1 2 3 {word} 5 6\n"
+    )
+    if is_held:
+        assert vizlight.read(path)["pair"].shape == (3, 2)
+    else:
+        with pytest.raises(vizlight.files.FileError, match=f"{word} of a field is beyond the type"):
+            vizlight.read(path)

@@ -53,6 +53,12 @@ _SCALARS = re.compile(rb"\nSCALARS[ \t]+\S+[ \t]+\w+[ \t]+(\d+)[ \t]*\r?\n")
 _ARRAY = re.compile(
     rb"(?:\s*METADATA\b.*?\n\r?\n)?\s*\S+\s+(\d+)\s+(\d+)\s+(\w+)[^\n]*\n", re.DOTALL
 )
+#: Largest numbers of types, and number of words that are looked at at once.
+_LARGEST = {
+    "float": 3.4028235e38, "double": 1.7976931348623157e308, "short": 2.0**15,
+    "unsigned_short": 2.0**16 - 1, "int": 2.0**31, "unsigned_int": 2.0**32 - 1,
+}  # fmt: skip
+_WORDS = 1 << 16
 #: What is no part of a number in text, such as -inf, and a line that does not begin with one.
 _ODD = re.compile(rb"(?i)[^\s\d.+einfaty-]|[ \t](?!nan|inf)[a-z_]")
 _WORD = re.compile(rb"(?mi)^[ \t]*(?!nan|inf)[a-z_%]")
@@ -202,9 +208,12 @@ def _field(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
         if is_text:
             word = _WORD.search(data, at)
             end = len(data) if word is None else word.start()
-            there = len(data[at:end].split())
+            words = data[at:end].split()
+            there = len(words)
             if _ODD.search(data, at, end):
                 return "words stand among the numbers of a field"
+            if (beyond := _beyond(words[:count], kind)) is not None:
+                return f"the number {beyond.decode()} of a field is beyond the type {kind!r}"
         else:
             width = next((count for part, count in file_parts.BYTES.items() if part in kind), 1)
             there, end = (len(data) - at) // width, at + count * width
@@ -212,6 +221,23 @@ def _field(data: mmap.mmap | bytes, at: int, is_text: bool) -> str:
             return f"{there} of {count} numbers of an array of a field are there"
         at = end
     return ""
+
+
+def _beyond(words: list[bytes], kind: str) -> bytes | None:
+    """Return the first number that its type does not hold, at which VTK ends the process."""
+    if kind not in _LARGEST:
+        return None
+    for first in range(0, len(words), _WORDS):
+        some = words[first : first + _WORDS]
+        try:
+            sizes = np.abs(np.array(some, dtype="S").astype(np.float64))
+        except ValueError:
+            continue  # a word that is no number ends the reading, as one that is missing does
+        large = np.flatnonzero(sizes > _LARGEST[kind]).tolist()
+        wrong = [i for i in large if b"inf" not in some[i].lower()]
+        if wrong:
+            return some[wrong[0]]
+    return None
 
 
 def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
