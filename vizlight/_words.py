@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import inspect
+import math
 import re
 import sys
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Container, Sequence
 
     from vizlight._types import Vector
 
@@ -42,6 +43,15 @@ def describe(value: object) -> str:
         kind = "an integer" if isinstance(value, int) else "a number"
         text = f"{kind} of more digits than Python prints"
     return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def numbers(text: str, counts: Container[int] = (3,)) -> tuple[float, ...]:
+    """Return numbers separated by commas, none where the text is not that."""
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        return ()
+    return values if len(values) in counts and all(map(math.isfinite, values)) else ()
 
 
 def printable(text: str, /) -> str:

@@ -160,6 +160,15 @@ def test_meridians_and_parallels_are_where_they_are_named():
     assert graticule(sheet(60, 40), 2.0).n_lines == 0
 
 
+def test_a_small_map_has_as_many_meridians_as_parallels():
+    grid = pv.ImageData(dimensions=(4, 4, 1), spacing=(0.1, 0.1, 1), origin=(-79.1, -3.8, 0))
+    projection = "+proj=lcc +lat_0=-3.6 +lat_1=-3.5 +lat_2=-3.7 +lon_0=-79"
+    lines = graticule(chart(in_degrees(grid), projection=projection), 1e3)
+    spans = [np.ptp(np.asarray(cell.points), axis=0) for cell in lines.cell]
+    meridians = sum(bool(across < up) for across, up, _ in spans)
+    assert meridians == 4
+
+
 def test_a_map_around_a_pole_has_words_on_all_sides():
     mesh = charted(-180, 180, 60, 90)
     made = np.asarray(frame(mesh, 1.5e5).points, dtype=float)[:, :2]

@@ -217,6 +217,10 @@ def test_options_win_over_the_rule():
     toward = np.subtract(look.view.position, look.view.focal_point)
     np.testing.assert_allclose(toward / np.linalg.norm(toward), (1, 0, 0), atol=1e-9)
     assert look.scene.lights == vizlight.presets.shape().lights
+    asked = {"slice": "z:3", "array": "T", "size": SIZE}
+    bar, none = (vizlight.look(mesh, **asked, key=key).key for key in (True, False))
+    assert [(key["question"], key["title"]) for key in bar] == [("value", "T")]
+    assert none == ()
 
 
 @pytest.mark.parametrize(
@@ -434,7 +438,7 @@ def test_a_threshold_keeps_voxels_of_labels_and_cells_with_all_corners_in_the_ra
 
 
 def test_a_level_needs_the_array_that_it_is_one_of():
-    with pytest.raises(ValueError, match="level: expected contour= with it, got it alone"):
+    with pytest.raises(ValueError, match="level: expected contour with it, got it alone"):
         vizlight.look(pv.ImageData(dimensions=(3, 3, 3)), level=2)
 
 

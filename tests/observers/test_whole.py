@@ -52,6 +52,19 @@ def test_values_without_light_are_left_out():
     assert any("have no value" in note for note in found.notes)
 
 
+def test_colours_that_were_lit_before_are_read_by_their_record():
+    mesh = sheet()
+    lit = vizlight.illuminate(mesh, FLAT)
+    shown = vizlight.tint(lit, "height", cmap="viridis")
+    plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
+    plotter.add_mesh(shown, scalars="rgb", rgb=True, lighting=False)
+    plotter.camera = from_above(mesh)
+    read = plotter.vizlight.legibility(**HOW).value
+    plotter.close()
+    assert read.median < 0.03
+    assert read.samples == HOW["samples"]
+
+
 def test_position_and_scale_of_plain_colors_are_read():
     mesh = sheet()
     plotter = pv.Plotter(off_screen=True, window_size=(360, 240))

@@ -190,7 +190,6 @@ def _check_output(out: Output, *, several: bool) -> None:
     from vizlight.looks.look import FORMATS, MOVIES
 
     _check.color("background", out.background)
-    _check.number("line_width", out.line_width, low=0.1, high=1000.0)
     for path in out.output or ():
         if several and not path.is_dir():
             expected = "a folder that exists, for several files or steps"

@@ -9,7 +9,6 @@ from __future__ import annotations
 import ast
 import functools
 import inspect
-import math
 import re
 from dataclasses import dataclass, field, fields, make_dataclass
 from fractions import Fraction
@@ -21,10 +20,10 @@ from cyclopts import App, Group, Parameter
 from vizlight import _words
 from vizlight._questions import QUESTIONS
 from vizlight._version import __version__
-from vizlight._words import AXES, message
+from vizlight._words import AXES, message, numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Mapping
+    from collections.abc import Callable, Mapping
 
     from vizlight._types import Foreign, Keywords
 
@@ -301,15 +300,6 @@ class Common:
     out: Output = Output()
 
 
-def numbers(text: str, counts: Container[int] = (3,)) -> tuple[float, ...]:
-    """Return numbers separated by commas, none where the text is not that."""
-    try:
-        values = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        return ()
-    return values if len(values) in counts and all(map(math.isfinite, values)) else ()
-
-
 def vector(name: str, text: str, *, n: int = 3, direction: bool = True) -> tuple[float, ...]:
     """Return a vector x,y,z, with zeros for missing components up to n.
 
@@ -332,36 +322,13 @@ def vector(name: str, text: str, *, n: int = 3, direction: bool = True) -> tuple
     return values + (0.0,) * (n - len(values))
 
 
-def plane(
-    name: str,
-    text: str,
-    *,
-    counts: Container[int] = (3,),
-    expected: str = "NORMAL:OFFSET, 3 numbers and one, such as 0,0,1:2.5 or z:2.5",
-) -> tuple[tuple[float, ...], float]:
-    """Return a normal and the distance of the plane from the origin along it."""
+def hyperplane(name: str, text: str) -> tuple[tuple[float, ...], float]:
+    """Return a normal of n-space and the distance of the hyperplane from the origin along it."""
     normal, _, offset = text.rpartition(":")
-    values = AXES.get(normal.lower()) or numbers(normal, counts)
-    distance = numbers(offset, (1,))
+    values, distance = numbers(normal, range(3, 100)), numbers(offset, (1,))
     if not (any(values) and distance):
-        raise ValueError(message(f"--{name}", expected, repr(text)))
+        raise ValueError(message(f"--{name}", "NORMAL:OFFSET, such as 0,0,0,1:0.2", repr(text)))
     return values, distance[0]
-
-
-def interval(name: str, text: str) -> tuple[str, float, float]:
-    """Return the name of an array and the ends of a range, infinite where one is empty."""
-    # From the right, as the name of an array may have colons of its own.
-    array, *ends = text.rsplit(":", 2)
-    bounds = [
-        numbers(end, (1,)) if end else (empty,)
-        for end, empty in zip(ends, (-math.inf, math.inf), strict=False)
-    ]
-    if len(bounds) == 2 and all(bounds):
-        low, high = bounds[0][0], bounds[1][0]
-        if low <= high and any(ends):
-            return array, low, high
-    expected = "NAME:LOW:HIGH, such as Temp:300:600 or Temp:300:"
-    raise ValueError(message(f"--{name}", expected, repr(text)))
 
 
 def place(name: str, text: str) -> tuple[str, float | str]:
@@ -485,9 +452,7 @@ READ: Mapping[str, tuple[object, Callable[[str, Foreign], object], str]] = {
     ),
     "hyperplane": (
         str | None,
-        functools.partial(
-            plane, counts=range(3, 100), expected="NORMAL:OFFSET, such as 0,0,0,1:0.2"
-        ),
+        hyperplane,
         "Hyperplane NORMAL:OFFSET that cuts the mesh: 0,0,0,1:0.2.",
     ),
     "rotation": (

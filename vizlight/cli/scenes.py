@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import math
 from typing import TYPE_CHECKING
 
 import vizlight
 from vizlight._questions import QUESTIONS
-from vizlight._words import message
+from vizlight._words import message, numbers
 from vizlight.cli import options
 from vizlight.cli.options import SurfacePart
 from vizlight.looks.steps import Step
@@ -52,12 +51,10 @@ def wishes_of(
     ValueError
         If a value does not fit, or two options do not go together.
     """
-    from vizlight.looks import map_parts
+    from vizlight.looks.options import checked
     from vizlight.looks.wishes import Wishes
 
     lights, eye, out = common.lights, common.eye, common.out
-    if part is not None:
-        check_part(part)
     _check_lights(lights)
     picture: Keywords = given_options(
         background=out.background,
@@ -65,7 +62,7 @@ def wishes_of(
         backend=out.backend,
         key=None if lights.key else False,
         progress=out.progress or None,
-        map_parts=None if out.map_parts is None else map_parts.named(out.map_parts),
+        map_parts=out.map_parts,
     )
     array = None
     if color is not None:
@@ -77,10 +74,6 @@ def wishes_of(
             raise ValueError(
                 message(f"--for {lights.question}", expected, f"--scalars {color.scalars}")
             )
-        if color.cmap is not None:
-            from vizlight.filters.tint import color_table
-
-            color_table([], cmap=color.cmap)
     scene = None if lights.scene is None else _scene_of(lights.scene)
     seen = given_options(
         up=None if eye.up is None else options.vector("up", eye.up),
@@ -97,22 +90,12 @@ def wishes_of(
         part={} if part is None else _part_of(part),
         light=dict(light or {}),
         eye=seen,
-        picture=picture,
+        picture=checked(picture),
         make_scene=_scene_maker(
             lights, common.finish, scene, dict(material or {}), filtered=question != "auto"
         ),
         surface=getattr(part, "surface", True),
     )
-
-
-def check_part(part: FilePart) -> None:
-    """Check the options of a part that need no mesh."""
-    together = [("level", part.level, "contour", part.contour)]
-    if isinstance(part, SurfacePart) and part.slice is not None and part.contour is not None:
-        raise ValueError(message("--slice", "no --contour beside it", "both"))
-    for option, value, needs, other in together:
-        if value is not None and other is None:
-            raise ValueError(message(f"--{option}", f"--{needs} with it", "it alone"))
 
 
 def _check_lights(lights: Lights) -> None:
@@ -124,29 +107,19 @@ def _check_lights(lights: Lights) -> None:
 
 def _part_of(part: FilePart) -> Keywords:
     """Return the options of the part of the data, with their texts read."""
+    from vizlight.looks.options import checked
+
     taken = given_options(
         time=part.time, overlay=part.overlay, nodata=part.nodata, contour=part.contour,
-        level=part.level,
+        level=part.level, threshold=part.threshold, clip=part.clip,
     )  # fmt: skip
     if part.at:
         taken["at"] = dict(options.place("at", text) for text in part.at)
     if isinstance(part, SurfacePart):
-        taken |= given_options(warp=part.warp, exaggeration=part.exaggeration, globe=part.globe)
-    if part.threshold:
-        taken["threshold"] = [options.interval("threshold", text) for text in part.threshold]
-    if part.clip:
-        taken["clip"] = [_plane("clip", text) for text in part.clip]
-    if isinstance(part, SurfacePart) and part.slice is not None:
-        taken["slice"] = _plane("slice", part.slice)
-    return taken
-
-
-def _plane(option: str, text: str) -> tuple[Vector, Vector]:
-    """Return the normal and the origin of a plane."""
-    normal, offset = options.plane(option, text)
-    # The offset is a distance, whatever the length of the normal that was given.
-    length = math.hypot(*normal)
-    return normal, tuple(offset * component / length for component in normal)
+        taken |= given_options(
+            warp=part.warp, exaggeration=part.exaggeration, globe=part.globe, slice=part.slice
+        )
+    return checked(taken)
 
 
 def times(file: Path, part: FilePart) -> list[float | str | None]:
@@ -161,7 +134,7 @@ def times(file: Path, part: FilePart) -> list[float | str | None]:
 
     if part.times is None:
         text = part.time
-        number = options.numbers(text or "", (1,))
+        number = numbers(text or "", (1,))
         return [*number] if number else [text]
     expected = "all, or indices of steps FIRST:END or FIRST:END:STEP, beside no --time"
     steps = series.of(vizlight.read(file))
@@ -263,7 +236,7 @@ def _view_of(view: str | None, scene: Scene | None, seen: Keywords) -> object:
     if view in VIEWS:
         return view
     # In n-space the eye has n components.
-    toward = options.numbers(view, tuple(range(4, 100)))
+    toward = numbers(view, tuple(range(4, 100)))
     return toward if any(toward) else options.vector("view", view)
 
 

@@ -310,7 +310,7 @@ def _graticule(sheet: charts.MapSheet, size: float) -> list[tuple[Array, str, bo
     wide = degrees / math.cos(math.radians(min(least, 80.0)))
     if not is_around:
         # Their words stand at the lower side, which may be shorter.
-        corners = sheet.plane.forward(np.array([[west + 0.1, south], [east - 0.1, south]]))
+        corners = sheet.plane.forward(np.array([[west, south], [east, south]]))
         long = float(np.linalg.norm(corners[1] - corners[0])) / georeference.METRES
         wide = max(wide, 0.8 * degrees * (east - west) / long)
     meridians = ticks(west, east, wide, "EW", MOST_AROUND if is_around else MOST)

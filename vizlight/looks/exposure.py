@@ -69,5 +69,5 @@ def _of_corners(mesh: pv.DataSet, value: Foreign, corners: Indices) -> Foreign:
     """Return the rows of an array, or of an array of the mesh by its name, at some points."""
     if isinstance(value, str) and value in mesh.array_names:
         value = records.averaged(mesh, value).point_data[value]
-    rows = np.asarray(value)
-    return rows[corners] if rows.ndim and len(rows) == mesh.n_points else value
+    is_rows = isinstance(value, list | tuple | np.ndarray) and len(value) == mesh.n_points
+    return np.asarray(value)[corners] if is_rows else value

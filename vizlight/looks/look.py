@@ -22,7 +22,7 @@ from vizlight.looks.contents import Contents
 from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces
 from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
-from vizlight.looks.steps import Step, source, written
+from vizlight.looks.steps import Step, run, source, written
 from vizlight.looks.wishes import even_light, is_whole_earth
 from vizlight.mesh import blocks, cf_grids, georeference, height_grids, meaning, series
 from vizlight.vtk.cells import dimensions
@@ -116,6 +116,11 @@ class Look:
         """Camera of the picture."""
         camera: pv.Camera = self.drawing.camera.run()
         return camera
+
+    @property
+    def key(self) -> tuple[Keywords, ...]:
+        """Keywords of ``plotter.vizlight.add_key`` for each key and bar of the picture."""
+        return tuple({name: run(value) for name, value in key.items()} for key in self._keys)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -276,23 +281,29 @@ class Look:
         background = wishes.picture.get("background") or drawing.background or wishes.background
         plotter = Step("plotter", "render.canvas", wishes.size, background=background, **keywords)
         steps = [layer.added(plotter) for layer in drawing.layers]
-        near = any(light.position is not None for light in self.scene.lights)
-        if wishes.picture.get("key", True):
-            keys = list(drawing.keys)
-            if keys and not any(key.get("title") for key in keys):
-                # Cameras of looks leave room for a title.
-                keys[0] = keys[0] | {"title": _title(drawing)}
-            for key in keys:
-                if key.get("question") == "value":
-                    # A bar has the colours of the map, in even light.
-                    even = key | {"scene": even_light(drawing.camera)}
-                    lying = {"lying": True} if wishes.wide else {}
-                    steps.append(_key_step(plotter, even | lying))
-                elif not near:
-                    # The key of a lamp that stands somewhere differs from place to place.
-                    steps.append(_key_step(plotter, key))
+        steps += [_key_step(plotter, key) for key in self._keys]
         steps.append(Step("", ".camera=", plotter, Step("", ".copy", drawing.camera)))
         return plotter, steps
+
+    @property
+    def _keys(self) -> list[Keywords]:
+        """Keys and bars of the picture."""
+        keys, wishes = [dict(key) for key in self.drawing.keys], self.wishes
+        if not wishes.picture.get("key", True):
+            return []
+        if keys and not any(key.get("title") for key in keys):
+            # Cameras of looks leave room for a title.
+            keys[0]["title"] = _title(self.drawing)
+        # The key of a lamp that stands somewhere differs from place to place.
+        near = any(light.position is not None for light in self.scene.lights)
+        # A bar has the colours of the map, in even light.
+        even = {"scene": even_light(self.drawing.camera)} | ({"lying": True} if wishes.wide else {})
+        is_bar = [key.get("question") == "value" for key in keys]
+        return [
+            key | even if bar else key
+            for key, bar in zip(keys, is_bar, strict=True)
+            if bar or not near
+        ]
 
     def read_steps(self) -> list[Step]:
         """Return the steps that print how much a reader reads back from the picture."""
@@ -395,13 +406,14 @@ def look(
         Background of the picture: white or nearly black.
     **options
         Further options. How files and data of xarray are read: ``time``, ``overlay``, ``at``,
-        ``nodata``, as by :func:`vizlight.read`. Parts of the data: ``contour``, ``level``,
-        ``warp``, ``exaggeration``, ``globe`` (a map of the whole earth on a ball, a raised one with
-        ``warp`` or ``exaggeration``). The light: ``scene``, and options of
-        :func:`vizlight.illuminate` or of the filter of the question, such as ``tangents``. The
-        picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``, ``map_parts`` (those
-        that are drawn of "coasts", "frame" and "isolines"; () for none), ``up``, ``parallel``,
-        ``zoom``, ``backend``.
+        ``nodata``, as by :func:`vizlight.read`. Parts of the data: ``slice`` and ``clip`` (a plane,
+        ``"z:4"`` or a normal and an origin), ``threshold`` (``"Temp:300:600"`` or a name and two
+        numbers), ``contour``, ``level``, ``warp``, ``exaggeration``, ``globe`` (a map of the whole
+        earth on a ball, a raised one with ``warp`` or ``exaggeration``). The light: ``scene``, and
+        options of :func:`vizlight.illuminate` or of the filter of the question, such as
+        ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
+        ``map_parts`` (those that are drawn of "coasts", "frame" and "isolines"; () for none),
+        ``up``, ``parallel``, ``zoom``, ``backend``.
 
     Returns
     -------

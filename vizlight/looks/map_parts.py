@@ -64,7 +64,7 @@ def named(parts: object) -> tuple[str, ...]:
         If they are none of :data:`PARTS`, nor "none" alone.
     """
     names = parts.split(",") if isinstance(parts, str) else parts
-    names = () if parts == "none" else names
+    names = () if isinstance(parts, str) and parts == "none" else names
     if not isinstance(names, list | tuple) or not all(name in PARTS for name in names):
         expected = f"names of {', '.join(PARTS)}, or 'none'"
         raise ValueError(_check.message("map_parts", expected, repr(parts)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
 import math
 from dataclasses import replace
@@ -14,8 +15,9 @@ import pyvista as pv
 from vizlight import _check, files
 from vizlight._words import message, one_of
 from vizlight.draw import render
+from vizlight.filters import tint
 from vizlight.filters.streamlines import vectors_by_default
-from vizlight.looks import map_parts
+from vizlight.looks import cuts, map_parts
 from vizlight.looks.contents import Contents
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import STYLES, Wishes, scene_step
@@ -27,7 +29,9 @@ from vizlight.shading.options import LightOptions, with_joined_names
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
-    from vizlight._types import Given, Keywords
+    from collections.abc import Callable, Mapping
+
+    from vizlight._types import Foreign, Given, Keywords
     from vizlight.looks.wishes import SceneMaker
 
 #: Options of how data are read, of what is taken of them, of the camera, and of the picture.
@@ -40,6 +44,59 @@ PICTURE = (
     "background", "line_width", "cmap", "clim", "scalars", "key", "map_parts", "backend",
     "progress",
 )  # fmt: skip
+
+
+def checked(options: Mapping[str, Given]) -> Keywords:
+    """Return options of the part, the camera and the picture, with their texts read.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value does not fit, or two options do not go together.
+    """
+    if options.get("level") is not None and options.get("contour") is None:
+        raise ValueError(message("level", "contour with it", "it alone"))
+    if options.get("slice") is not None and options.get("contour") is not None:
+        raise ValueError(message("slice", "no contour beside it", "both"))
+    return {
+        name: value if value is None or name not in CHECKS else CHECKS[name](name, value)
+        for name, value in options.items()
+    }
+
+
+def _color(name: str, value: Foreign) -> Foreign:
+    """Return a colour that can be drawn."""
+    color = _check.color(name, value)
+    return value if isinstance(value, str) else color
+
+
+def _colors(_name: str, value: Foreign) -> Foreign:
+    """Return a map of colours that can be drawn, as it is."""
+    tint.color_table([], cmap=value)
+    return value
+
+
+#: Checks of the options that no filter checks.
+CHECKS: dict[str, Callable[[str, Foreign], Foreign]] = {
+    "clip": functools.partial(cuts.several, read=cuts.plane),
+    "threshold": functools.partial(cuts.several, read=cuts.interval),
+    "slice": cuts.plane,
+    "contour": _check.text,
+    "level": _check.number,
+    "warp": _check.text,
+    "exaggeration": _check.number,
+    "globe": _check.boolean,
+    "parallel": _check.boolean,
+    "zoom": _check.positive,
+    "background": _color,
+    "line_width": functools.partial(_check.number, low=0.1, high=1000.0),
+    "cmap": _colors,
+    "clim": _check.limits,
+    "key": _check.boolean,
+    "map_parts": lambda _, parts: map_parts.named(parts),
+    "backend": functools.partial(_check.text, expected="'egl' or 'osmesa'"),
+    "progress": _check.boolean,
+}
 
 
 def sorted_out(
@@ -65,12 +122,7 @@ def sorted_out(
     light_names = {*inspect.signature(LightOptions).parameters}
     groups: dict[str, Keywords] = {"part": {}, "light": {}, "eye": {}, "picture": {}}
     scene = options.pop("scene", None)
-    _check.boolean("globe", options.get("globe", False))
-    if options.get("level") is not None and options.get("contour") is None:
-        raise ValueError(_check.message("level", "contour= with it", "it alone"))
-    if options.get("map_parts") is not None:
-        options["map_parts"] = map_parts.named(options["map_parts"])
-    for name, value in options.items():
+    for name, value in checked(options).items():
         group = next(
             (
                 key

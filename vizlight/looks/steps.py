@@ -78,8 +78,8 @@ class Step:
         return result
 
     def _called(self) -> Foreign:
-        arguments: list[Foreign] = [_run(value) for value in self.arguments]
-        keywords = {key: _run(value) for key, value in self.keywords.items()}
+        arguments: list[Foreign] = [run(value) for value in self.arguments]
+        keywords = {key: run(value) for key, value in self.keywords.items()}
         if self.path == "[]":
             return arguments[0][arguments[1]]
         if self.path == "-":
@@ -118,11 +118,12 @@ class Step:
         yield from self.keywords.values()
 
 
-def _run(value: object) -> object:
+def run(value: object) -> object:
+    """Return a value with the results of the steps in it."""
     if isinstance(value, Step):
         return value.run()
     if isinstance(value, list | tuple):
-        return type(value)(_run(part) for part in value)
+        return type(value)(run(part) for part in value)
     return str(value) if isinstance(value, Path) else value
 
 

@@ -17,7 +17,8 @@ from vizlight import _check
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.live import Live, items, matrix_of
 from vizlight.draw.strokes import SUPERSAMPLED, has_pass
-from vizlight.filters.tint import values_of
+from vizlight.filters.tint import unlit_colors, values_of
+from vizlight.mesh import records
 from vizlight.mesh.polylines import direction_colors
 from vizlight.model.kernels import unit_rows
 from vizlight.observers.eye import MM_PER_INCH, NOISE
@@ -238,9 +239,7 @@ def _mesh_of(mapper: vtkMapper) -> pv.DataSet | None:
     mesh = _glyphs_of(mapper) if glyphs else pv.wrap(mapper.GetInput())
     if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
         return None
-    direct = mapper.GetColorMode() == DIRECT and bool(mapper.GetScalarVisibility())
-    marks = has_lines_only(mesh) or GLYPH in mesh.point_data
-    return mesh if not direct or marks else None
+    return mesh
 
 
 def _glyphs_of(mapper: Foreign) -> pv.PolyData | None:
@@ -316,6 +315,9 @@ def _values(mesh: pv.DataSet, name: str | None, table: Foreign) -> Keywords:
     if values.ndim == 1:
         has_table = isinstance(table, pv.LookupTable)
         return {"values": values, "table": table, "flat": flat} if has_table else {}
+    if name in records.all_made(mesh) and records.provenance(mesh, name)["filter"] == "tint":
+        source = records.provenance(mesh, name)["options"]["scalars"]
+        return _values(mesh, source, unlit_colors(mesh, name)) if source in mesh.array_names else {}
     return {"by_axes": True} if _by_axes(mesh, values) else {}
 
 

@@ -191,7 +191,8 @@ def with_joined_names(options: Keywords) -> Keywords:
     """Return options in which names of two or three components of tangents are one text."""
     names: object = options.get("tangents")
     # Two names of a field of lines are those of a cross field.
-    if options.get("line_field") or not (isinstance(names, list | tuple) and len(names) in (2, 3)):
+    is_field = _check.boolean("line_field", options.get("line_field", False))
+    if is_field or not (isinstance(names, list | tuple) and len(names) in (2, 3)):
         return options
     if not all(isinstance(name, str) for name in names) or len({*names}) < len(names):
         return options
