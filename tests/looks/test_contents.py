@@ -184,3 +184,21 @@ def test_lines_in_a_plane_are_flat():
     flat = pv.MultipleLines([[0.0, 0, 2], [1, 0, 2], [1, 3, 2]])
     assert Contents(flat).flat_axis == 2
     assert Contents(pv.MultipleLines([[0.0, 0, 2], [1, 0, 2], [1, 3, 4]])).flat_axis is None
+
+
+def test_tones_of_an_image_without_a_place_are_no_kinds():
+    image = pv.ImageData(dimensions=(20, 10, 1))
+    image["tone"] = np.where(np.arange(200) % 7 < 3, 0, 255)
+    assert Contents(image).first("kinds").name == "tone"
+    meaning.attach(image, meaning.Meaning(axes=meaning.PAGE))
+    assert [(array.name, array.role) for array in Contents(image, raster=True).arrays] == [
+        ("tone", "values")
+    ]
+    image["tone"][image["tone"] == 255] = 3
+    assert Contents(image).arrays[0].role == "kinds"
+
+
+def test_arrays_of_which_nothing_can_be_shown_are_named():
+    empty = {"gone": lambda n: np.full(n, np.nan), "same": lambda n: np.full(n, 3), "ids": rising}
+    assert of(**empty).words_on_none() == "gone has no number, same is 3 everywhere"
+    assert of(**empty, p=rising).words_on_none() == ""

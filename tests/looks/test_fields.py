@@ -160,6 +160,15 @@ def test_unit_vectors_are_shown_by_their_direction_and_not_by_their_length():
     assert "speed" not in look.summary
 
 
+def test_an_image_with_vectors_in_a_small_part_is_drawn_around_that_part():
+    grid = pv.ImageData(dimensions=(30, 30, 30), origin=(5, 0, 0))
+    flows = np.linalg.norm(grid.points - (15, 10, 10), axis=1) < 5
+    grid["V"] = np.outer(flows, (0.0, 0, 1))
+    look = vizlight.look(grid, size=(300, 200))
+    assert "extract_subset([5, 15, 5, 15, 5, 15])" in look.script()
+    assert look.key[0]["title"] == "V"
+
+
 @pytest.mark.slow
 def test_a_picture_in_doubt_is_read_back_and_not_chosen_where_it_cannot_be_read():
     look = vizlight.look(sheet(1.2, 300))

@@ -237,6 +237,17 @@ def test_steps_of_a_functional_image(tmp_path):
         vizlight.read(tmp_path / "v.nii", time=3)
 
 
+def test_three_volumes_of_directions_are_vectors_and_others_are_steps(tmp_path):
+    ways = np.random.default_rng(0).normal(size=(3, 4, 5, 3)).astype(np.float32)
+    ways /= np.linalg.norm(ways, axis=3, keepdims=True)
+    ways[0] = 0
+    nifti(tmp_path / "v1.nii", ways, np.diag([-2.0, 2, 2, 1]))
+    read = vizlight.read(tmp_path / "v1.nii")["NIFTI"]
+    np.testing.assert_array_equal(read.reshape(5, 4, 3, 3)[:, :, ::-1], ways.transpose(2, 1, 0, 3))
+    nifti(tmp_path / "steps.nii", 3 * ways, np.eye(4))
+    assert vizlight.read(tmp_path / "steps.nii")["NIFTI"].ndim == 1
+
+
 def test_a_volume_of_freesurfer_and_colours(tmp_path):
     image = nibabel.MGHImage(
         np.arange(60, dtype=np.float32).reshape(3, 4, 5), np.diag([-1, 1, 1, 1])

@@ -171,6 +171,24 @@ def test_pressure_falls_upward_and_is_in_hectopascals():
     assert "pressure in hPa that falls upward" in meaning.line(mesh)
 
 
+@pytest.mark.parametrize(("sign", "is_down"), [(1, True), (-1, False)])
+def test_a_bathymetry_that_is_mostly_above_0_counts_down(sign, is_down):
+    depths = sign * np.arange(-3.0, 17).reshape(4, 5)
+    mesh = grid({"h": (("y", "x"), depths, {"long_name": "Final bathymetry", "units": "m"})}, {})
+    expected = -depths if is_down else depths
+    assert sorted(mesh["h"]) == sorted(expected.ravel())
+
+
+def test_the_first_place_with_data_is_taken_along_further_axes():
+    values = np.full((2, 3, 4, 5), np.nan)
+    values[1, 2] = 7
+    mesh = grid({"t": (("direction", "frequency", "y", "x"), values)}, {})
+    assert set(mesh["t"]) == {7.0}
+    said = " ".join(meaning.of(mesh).notes)
+    assert "first with data of direction" in said
+    assert "first with data of frequency" in said
+
+
 @pytest.mark.parametrize("words", [{"positive": "down"}, {"standard_name": "depth"}, {}])
 def test_depths_are_negative(words):
     mesh = grid(

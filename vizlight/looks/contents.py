@@ -50,6 +50,8 @@ _TABLE_WORDS = {
 #: Names of other tables: the tangents of glTF belong to textures, and PyVista's splines have their
 #: length.
 _TABLES = {"TANGENT", "arc_length", "gmsh:bounding_entities", "gmsh:dim_tags"}
+#: Numbers that stand for white in images of 8 and 16 bits.
+WHITE = (2**8 - 1, 2**16 - 1)
 #: Words in the names of kinds, whose numbers may be many.
 _KIND_WORDS = {
     "block", "body", "chain", "class", "classes", "domain", "group", "groups", "label", "labels",
@@ -187,6 +189,29 @@ class Contents:
         every = sorted_arrays(self.mesh, raster=self.raster)
         return tuple(array for array in every if array.name not in self.without)
 
+    def words_on_none(self) -> str:
+        """Return why arrays of one number a point or a cell are not shown, empty if one is."""
+        if self.arrays:
+            return ""
+        words = []
+        for data in (self.mesh.point_data, self.mesh.cell_data):
+            for name, rows in data.items():
+                values, name_words = np.asarray(rows), _words(name)
+                is_number = name_words[-1] in _NO_DATUM or not _NUMBERS.isdisjoint(name_words)
+                if (
+                    is_number
+                    or values.ndim != 1
+                    or values.dtype.kind not in "fiu"
+                    or not len(values)
+                ):
+                    continue
+                finite = values[np.isfinite(values)]
+                if not len(finite):
+                    words.append(f"{name} has no number")
+                elif finite.min() == finite.max():
+                    words.append(f"{name} is {finite[0]:g} everywhere")
+        return ", ".join(words)
+
     def first(self, *roles: Role) -> Named | None:
         """Return the best array of some roles, None if no array has one."""
         return next((array for array in self.arrays if array.role in roles), None)
@@ -249,6 +274,9 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
             if meaning.is_planar(values) and (name == texture or mesh.bounds_size[2]):
                 # Two components are vectors in a plane alone.
                 continue
+            if array is not None and array.high in WHITE and meaning.is_photograph(mesh):
+                # Few tones are those of a drawing, or of two that were told apart.
+                array, raster = replace(array, role="values"), False
             if array is not None and array.role == "values" and _HEIGHTS.search(said):
                 array = replace(array, role="heights")
             if array is not None and array.role == "heights" and _NO_GROUND.search(said):

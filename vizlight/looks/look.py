@@ -643,7 +643,9 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         step = wishes.isosurface(step)
     of_light = (wishes.light.get(name) for name in ("normals", "occlusion", "positions"))
     without = tuple(name for name in of_light if isinstance(name, str))
-    return step, Contents(step.run(), raster, without), notes
+    contents = Contents(step.run(), raster, without)
+    notes += [words] if (words := contents.words_on_none()) else []
+    return step, contents, notes
 
 
 def _of_stretched(mesh: pv.DataSet, factor: float) -> str:

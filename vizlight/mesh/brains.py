@@ -27,6 +27,8 @@ __all__ = [
 
 #: Name of the array of a volume by the end of the name of its file, where that is not NIfTI.
 FORMATS = {".mnc": "MINC", ".mgz": "MGH", ".mgh": "MGH", ".head": "AFNI", ".brik": "AFNI"}
+#: Most by which the lengths of directions differ from 1, in the median.
+UNIT_LENGTH = 0.01
 #: Ends of names of surfaces. FreeSurfer's are known by their first bytes.
 SURFACES = (".gii", ".gii.gz", ".mz3", ".annot")
 #: Ends of names of volumes.
@@ -194,6 +196,8 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     steps = int(shape[3]) if len(shape) > 3 else 1
     part: Foreign = image.dataobj
     times, index = [], 0
+    if time is None and _are_directions(part, shape):
+        steps, part = 1, np.asanyarray(part)[:, :, :, np.newaxis]
     if steps > 1:
         zooms = image.header.get_zooms()
         # Headers without a duration have 0, and steps are then counted.
@@ -201,7 +205,7 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
         times = [width * i for i in range(steps)]
         index = series.chosen(times, time)
     # Slices of the proxy read a single step of the file.
-    rows = np.asanyarray(part[..., index] if len(shape) == 4 else part)
+    rows = np.asanyarray(part[..., index] if part.ndim == 4 else part)
     # A vector at each voxel has its components on the fifth axis.
     if rows.ndim == 5 and rows.shape[3] == 1:
         rows = rows[:, :, :, 0]
@@ -230,6 +234,15 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     )
     meaning.attach(grid, said)
     return grid if steps < 2 else series.marked(grid, times, index)
+
+
+def _are_directions(part: Foreign, shape: Sequence[int]) -> bool:
+    """Return whether three volumes are components of vectors, which are of length 1 or 0."""
+    if len(shape) != 4 or shape[3] != 3 or part.dtype.kind != "f":
+        return False
+    lengths = np.linalg.norm(np.asanyarray(part), axis=3)
+    lengths = lengths[lengths > 0]
+    return len(lengths) > 0 and float(np.median(np.abs(lengths - 1))) < UNIT_LENGTH
 
 
 def of_affine(affine: AnyArray, counts: Sequence[int]) -> pv.ImageData | pv.StructuredGrid:

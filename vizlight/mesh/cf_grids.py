@@ -93,6 +93,8 @@ _PRESSURES = {
     "pa": 1e-2, "pascal": 1e-2, "hpa": 1.0, "hectopascal": 1.0, "mb": 1.0, "mbar": 1.0,
     "millibar": 1.0, "kpa": 10.0, "kilopascal": 10.0, "bar": 1e3, "dbar": 100.0, "decibar": 100.0,
 }  # fmt: skip
+#: Most places along further axes at which data are looked for.
+MOST_LOOKED_AT = 1000
 #: Standard and other names of what counts downward, though no unit says that it is a pressure.
 _DOWN = (
     r"depth.*|dept[htuvw]|gdep.*|.*_depth|atmosphere_(hybrid_)?sigma.*|atmosphere_ln_pressure.*"
@@ -187,6 +189,8 @@ def read(
         # Attributes that name corners or areas which are not there mean nothing for the grid.
         warnings.filterwarnings("ignore", "Variable.s. referenced in")
         warnings.filterwarnings("ignore", ".* has non-conforming '_FillValue'")
+        # Variables over one axis twice are on no grid.
+        warnings.filterwarnings("ignore", "Duplicate dimension names present")
         # A store of Zarr without a summary of its metadata takes longer to open, no more.
         warnings.filterwarnings("ignore", "Failed to open Zarr store with consolidated")
         if path.suffix.lower() in GRIB:
@@ -678,7 +682,7 @@ class _Reader:
         if dim in single:
             return single[dim]
         if self.letters[dim][0] != "z" or along is None or along.dtype.kind not in "iuf":
-            self._note_first([dim])
+            self._note_first({dim: 0})
             return 0
         ticks: Array = np.array(along.values, dtype=np.float64)
         heights, words = _up(str(along.name), along.attrs, ticks, "")
@@ -697,11 +701,12 @@ class _Reader:
             heights, words = _up(str(along.name), along.attrs, ticks, "")
             self.said.level = meaning.level(words, float(heights[index]))
 
-    def _note_first(self, dims: Sequence[str]) -> None:
-        """Note that the first value along some axes is taken."""
-        for dim in dims:
-            if f"first of {dim}" not in self.said.notes:
-                self.said.notes.append(f"first of {dim}")
+    def _note_first(self, dims: Mapping[str, int]) -> None:
+        """Note that the first value along some axes is taken, or the first one with data."""
+        for dim, index in dims.items():
+            note = f"first {'with data ' * bool(index)}of {dim}"
+            if note not in self.said.notes:
+                self.said.notes.append(note)
 
     def _last_with_data(self) -> dict[str, int]:
         """Return the index along each axis of time of the last step with data, none without one."""
@@ -825,7 +830,12 @@ class _Reader:
             if len(named) == 3:
                 self._refuse_table(variable.isel(dict.fromkeys({*dims} - {*there}, 0)))
             first = {dim: single.get(dim, 0) for dim in dims if dim not in named.values()}
-            self._note_first([dim for dim in there if dim in first])
+            others = [dim for dim in there if dim in first]
+            if others and not np.isfinite(variable.isel(first).values).any():
+                first |= _with_data(
+                    variable.isel({dim: first[dim] for dim in {*first} - {*others}}), others
+                )
+            self._note_first({dim: first[dim] for dim in others})
             fields[name] = variable.isel(first)
         return fields
 
@@ -1047,7 +1057,12 @@ class _Reader:
             self.said.arrays.setdefault(name, {})["units"] = "m"
         positive = str(attributes.get("positive", "")).lower()
         standard = str(attributes.get("standard_name", ""))
-        if positive == "down" or (not positive and re.fullmatch(_DEPTHS, standard)):
+        words = f"{name} {attributes.get('long_name', '')}".lower()
+        is_depth = re.fullmatch(_DEPTHS, standard) or (
+            # Most of what a map of the sea floor shows is below the sea.
+            "bathymetry" in words and np.nanmean(values) > 0
+        )
+        if positive == "down" or (not positive and is_depth):
             rows = -values
             self.said.notes.append(f"{name!r} counts down, its sign is changed")
         return rows
@@ -1157,6 +1172,16 @@ def _in_degrees(name: str, attributes: Mapping[str, Foreign], *, strict: bool = 
     if re.fullmatch(r"rad(ian)?s?", unit):
         return "radians" if earth else ""
     return "degrees" if earth and unit in ("", "1") else ""
+
+
+def _with_data(variable: Foreign, dims: Sequence[str]) -> dict[str, int]:
+    """Return the first place along some axes of a variable where it has data, or the very first."""
+    every = itertools.product(*(range(variable.sizes[dim]) for dim in dims))
+    for indices in itertools.islice(every, MOST_LOOKED_AT):
+        place = dict(zip(dims, indices, strict=True))
+        if np.isfinite(variable.isel(place).values).any():
+            return place
+    return {}
 
 
 def _named_so(pattern: str, name: str, attributes: Mapping[str, Foreign]) -> bool:

@@ -390,7 +390,7 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
             # A picture with a model of its camera has a system, but its pixels have no place.
             crs = None if file.transform.is_identity else file.crs
             on_page = _has_no_place(file)
-            axes = ["x to the right", "y up the page"] if on_page else ["x east", "y north"]
+            axes = meaning.PAGE if on_page else ["x east", "y north"]
     words, said = [], meaning.Meaning(axes=axes)
     for name, rows in arrays.items():
         # Heights without a unit on a map are taken for metres, as lengths are.
@@ -471,9 +471,7 @@ def _stack(file: Foreign, path: Path) -> pv.ImageData | None:
     notes = [f"{len(pages)} pages as a volume, the first on top"]
     if "spacing" not in said:
         notes.append("pages are taken to be as far apart as pixels")
-    meaning.attach(
-        volume, meaning.Meaning(axes=["x to the right", "y up the page", "z up"], notes=notes)
-    )
+    meaning.attach(volume, meaning.Meaning(axes=[*meaning.PAGE, "z up"], notes=notes))
     return volume
 
 

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ANATOMY", "MEANING", "AxisScale", "Meaning", "along_grid", "attach", "components",
-    "is_of_sea", "line", "metres", "of", "only_vectors", "speed", "usual_unit", "vectors", "ways",
-    "with_named",
+    "is_of_sea", "is_photograph", "line", "metres", "of", "only_vectors", "speed", "usual_unit",
+    "vectors", "ways", "with_named",
 ]  # fmt: skip
 
 #: Most distinct values of an array of kinds, such as materials or labels.
@@ -40,6 +40,8 @@ MEANING = "meaning"
 ANATOMY = {
     "x to the right": "left, right", "y forward": "back, front", "z up": "down, up",
 }  # fmt: skip
+#: Axes of an image that has no place on the earth.
+PAGE = ["x to the right", "y up the page"]
 #: Attributes of an array of a file that are kept.
 KEPT = ("standard_name", "units", "long_name", "cell_methods")
 
@@ -210,6 +212,16 @@ def ways(mesh: pv.DataSet) -> tuple[str, ...]:
     """
     starts = [axis.partition(",")[0] for axis in of(mesh).axes]
     return tuple(ANATOMY.values()) if starts == list(ANATOMY) else ("x", "y", "z")
+
+
+def is_photograph(mesh: pv.DataSet) -> bool:
+    """Return whether a mesh is an image that has no place on the earth.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    return of(mesh).axes == PAGE
 
 
 def line(mesh: pv.DataSet) -> str:

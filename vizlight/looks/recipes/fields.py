@@ -35,7 +35,7 @@ from vizlight.model import kernels
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Foreign, Keywords
+    from vizlight._types import Array, Bools, Foreign, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
@@ -192,9 +192,9 @@ def _bar(mesh: Step, name: str, colors: Keywords, sense: str) -> Keywords:
 
 
 def _lengths(mesh: pv.DataSet, name: str) -> Array:
-    """Return the finite lengths of vectors."""
+    """Return the finite lengths of vectors; one of 0 is that of a place without a vector."""
     sizes = kernels.length_rows(mesh[name])
-    return sizes[np.isfinite(sizes)]
+    return sizes[np.isfinite(sizes) & (sizes > 0)]
 
 
 def _is_even(mesh: pv.DataSet, name: str) -> bool:
@@ -268,6 +268,7 @@ def flow(case: Case) -> Drawing:
     if array.of_cells:
         mesh = Step("averaged", ".cell_data_to_point_data", mesh)
     keywords: Keywords = {"tangents": array.name} | dict(case.wishes.light)
+    mesh = _where_it_flows(mesh, array.name)
     on = mesh
     if "contour" in case.wishes.part:
         on = keywords["surface"] = case.wishes.isosurface(mesh)
@@ -315,6 +316,27 @@ def flow(case: Case) -> Drawing:
     if case.map_frame is None:
         layers += [*_hull(mesh), *_floor(case, box, camera), *case.boxed(box, camera)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
+
+
+def _where_it_flows(mesh: Step, name: str) -> Step:
+    """Return the step that takes the part of an image with vectors, if that is less than half."""
+    grid = mesh.run()
+    if not isinstance(grid, pv.ImageData):
+        return mesh
+    rows: Bools = np.any(grid.point_data[name], axis=1)
+    flows = rows.reshape(grid.dimensions, order="F")
+    spans = [np.flatnonzero(np.any(flows, axis=others)) for others in ((1, 2), (0, 2), (0, 1))]
+    if any(not len(span) for span in spans):
+        return mesh
+    ends = [
+        (max(int(span[0]) - 1, 0), min(int(span[-1]) + 1, count - 1))
+        for span, count in zip(spans, grid.dimensions, strict=True)
+    ]
+    if np.prod([high - low + 1 for low, high in ends]) > grid.n_points / 2:
+        return mesh
+    starts = np.reshape(grid.extent, (3, 2))[:, 0].tolist()
+    voi = [start + end for start, pair in zip(starts, ends, strict=True) for end in pair]
+    return Step("part", ".extract_subset", mesh, voi)
 
 
 def _along_surface(case: Case) -> Drawing | None:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 ABOVE = Viewpoint((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), True, "from above, north up")
 #: Points above which a relief has no sky, which would take longer than all the rest, and those of a
 #: map so wide that each row has metres of its own, which take eight times as long.
-MOST_SKY, MOST_WIDE = 250_000, 30_000
+MOST_SKY, MOST_WIDE = 250_000, 4_000
 
 
 def relief(case: Case) -> Drawing:

@@ -73,7 +73,9 @@ def values(case: Case) -> Drawing:
         keywords, note = case.ranged(rows, array.name, ON_SURFACES, lengths=False)
     elif not bent:
         # Nothing is lit: the map may run in lightness, which shows more than hues alone.
-        cmap = "gray" if case.is_of_body else LIGHTNESS
+        whole = mesh.run()[array.name].dtype.kind in "iu"
+        is_gray = case.is_of_body or (whole and meaning.is_photograph(mesh.run()))
+        cmap = "gray" if is_gray else LIGHTNESS
         keywords, note = case.ranged_of(mesh, array, cmap, amounts=case.is_of_earth)
     if array.role == "kinds":
         keywords = colors_of_kinds(mesh, array, case.wishes.colors)
