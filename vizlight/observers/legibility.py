@@ -104,7 +104,8 @@ def legibility(
         Eye of the picture that is drawn. Default: the view of the scene, else the isometric view
         that shows the whole mesh. A camera is taken as it is.
     picture : array_like of shape (H, W, 3), or path, optional
-        Picture of the mesh, by any program, in bytes or from 0 to 1, or its file.
+        Picture of the mesh, by any program, in bytes or from 0 to 1 (1e-5 beyond is taken for
+        rounding), or its file.
     camera : pyvista.Camera, optional
         Camera of ``picture``, which fills it: of a picture with a margin for its key, such as that
         of a look, pass the part without it, or read the plotter itself.
