@@ -115,8 +115,11 @@ def test_values_beyond_a_picture_are_rounding_or_named():
     read = read_picture(gray)
     assert (read.min(), read.max()) == (0, 1)
     np.testing.assert_array_equal(read, np.clip(gray, 0, 1))
-    for value, words in ((1.0001, "from -1e-05 to 1.0001; clip"), (-2e-5, "from -2e-05 to 1"),
-                         (np.nan, "not finite"), (np.inf, "not finite"), (200, "to 200")):  # fmt: skip
+    words_of = {
+        1.0001: "from -1e-05 to 1.0001; clip", -2e-5: "from -2e-05 to 1", np.nan: "not finite",
+        np.inf: "not finite", 200.0: "to 200",
+    }  # fmt: skip
+    for value, words in words_of.items():
         gray[2, 2, 2] = value
         with pytest.raises(ValueError, match=f"picture: expected bytes.* {words}"):
             read_picture(gray)

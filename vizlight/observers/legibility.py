@@ -19,7 +19,7 @@ from vizlight.mesh.polylines import backdrop
 from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.figures import Legibility
 from vizlight.observers.measure import measure
-from vizlight.observers.samples import camera_of, part_on
+from vizlight.observers.samples import camera_of, is_large, part_on
 from vizlight.observers.whole import PRINT, read_picture, reading
 from vizlight.scene import Light, Scene, View
 from vizlight.scene.presets import required_scene
@@ -289,10 +289,16 @@ def _parts(
     light |= {name: value for name, value in drawing.items() if name in LIGHT}
     options = LightOptions(**light)
     shown = [(block, path) for block, path in blocks.check(mesh) if block.n_points]
+    smooth = dataclasses.replace(options, feature_angle=None)
     # Rows of values that are no array of the mesh do not fit points that are split.
     if lit and isinstance(scalars, str | None):
-        shown = [(with_sharp_edges(block, options), path) for block, path in shown]
-    options = dataclasses.replace(options, feature_angle=None)
+        # The edges of a large surface are looked for near the places that are read.
+        shown = [
+            (block if is_large(block) else with_sharp_edges(block, options), path)
+            for block, path in shown
+        ]
+    else:
+        options = smooth
     values: list[Raw | None] = [None] * len(shown)
     table = None
     if bar is not None:
@@ -304,8 +310,9 @@ def _parts(
     width = float(drawing.get("line_width", 1.0))
     return [
         part_on(
-            block, scene.replace(view=view), options, path, lit=lit, values=array, table=table,
-            width=width, diameter=stroke_of(block, {"line_width": width} | drawing).diameter,
+            block, scene.replace(view=view), options if is_large(block) else smooth, path,
+            lit=lit, values=array, table=table, width=width,
+            diameter=stroke_of(block, {"line_width": width} | drawing).diameter,
         )
         for (block, path), array in zip(shown, values, strict=True)
     ]  # fmt: skip

@@ -207,7 +207,7 @@ def measure(
     ahead, lengths = _of_glyphs(glyphs, lines, seen, eye)
     thing = _things(pixels, parts, lines, glyphs, eye)
     random = np.random.default_rng(seed)
-    has_marks = any(part.by_form and part.inputs.tangents is not None for part in parts)
+    has_marks = any(part.by_form and part.has_tangents for part in parts)
     grain = grain_of(seen, eye, seed) if has_marks else np.zeros_like(seen.colors)
     has = _Seen(pixels, number, camera, eye, thing, *_as_things(seen, grain, pixels, thing), random)
     chosen = np.sort(random.permutation(len(pixels.row))[:samples])
@@ -266,8 +266,13 @@ class _Seen(NamedTuple):
             self.things, chosen.row, chosen.column, self.random, self.eye.noise, share
         )
         beside = [_beside(pixels, self.number, ids, step) for step in ((0, 1), (1, 0))]
-        here = sample(part, chosen, camera)
-        right, up = (sample(part, pixels.take(rows), camera) for rows in beside)
+        looked_at = [chosen, *map(pixels.take, beside)]
+        cells, cell = np.unique([some.cell for some in looked_at], return_inverse=True)
+        near = part.near(cells)
+        here, right, up = (
+            sample(near, some._replace(cell=own), camera)
+            for some, own in zip(looked_at, cell.reshape(3, -1), strict=True)
+        )
         course = np.zeros(len(ids))
         if here.tangents is not None and here.has_one_tangent:
             way = courses(camera, pixels.size, here.points, here.tangents[:, 0])

@@ -195,6 +195,8 @@ def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Se
     lit = live.scalars is None or "values" in colors
     if not lit and not has_lines_only(mesh) and GLYPH not in mesh.point_data:
         return None
+    # What is drawn has its sharp edges already.
+    options = dataclasses.replace(options, feature_angle=None)
     placed, options = moved(mesh, options, matrix_of(actor.GetMatrix()))
     return part_on(
         placed, scene, options, lit=lit, width=width, diameter=live.stroke.diameter, **colors
@@ -382,7 +384,7 @@ def read_picture(picture: object) -> Array:
     scale = 255.0 if array.dtype == np.uint8 else 1.0
     rgb = np.asarray(array[..., :3], dtype=np.float64) / scale
     low, high = float(rgb.min()), float(rgb.max())
-    if not (-BEYOND <= low and high <= 1 + BEYOND):
+    if not (low >= -BEYOND and high <= 1 + BEYOND):
         finite = math.isfinite(low) and math.isfinite(high)
         got = f"numbers from {low:.6g} to {high:.6g}" if finite else "numbers that are not finite"
         remedy = "clip them, or divide them by the number of white"
