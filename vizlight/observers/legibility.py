@@ -181,7 +181,9 @@ def legibility(
     the pixels that it covers are compared with those that it would cover if it were turned round:
     the sense is right where the former stand out more.
 
-    A reader of a surface with lines on it looks between them, as far as 10 arc minutes away.
+    A reader of a surface with lines on it looks between them, as far as 10 arc minutes away. Of a
+    large surface normals are computed near the places that are read, and ``feature_angle="auto"``
+    looks for creases there.
 
     Bits are the logarithmic score of the reader's belief, ``log2(A) + E[log2 q]`` for A
     candidates, at the best share of lapses, less the score of the same answers about other places

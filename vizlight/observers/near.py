@@ -83,7 +83,9 @@ def near(mesh: pv.DataSet, surface: DrawnTriangles, cells: Indices, light: Light
         points = more
     own = _with_rows(part, mesh, light, origin, surface.cells_of(around))
     at = np.searchsorted(origin, corners)
-    split = with_sharp_edges(part, own)
+    # Points of a grid are not split.
+    is_grid = not isinstance(mesh, pv.PolyData | pv.UnstructuredGrid)
+    split = part if is_grid else with_sharp_edges(part, own)
     if not isinstance(split, pv.PolyData) or split is part:
         return Near(part, own, at, origin)
     place: Indices = np.asarray(split.point_data[PLACE])

@@ -23,7 +23,7 @@ from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.verify.between import Places, interpolated, mean_spaces
 from vizlight.vtk.arrays import points_of
-from vizlight.vtk.drawn import DrawnTriangles, flat_cells
+from vizlight.vtk.drawn import DrawnTriangles
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -285,7 +285,8 @@ class SeenMesh:
 
 def is_large(mesh: pv.DataSet) -> bool:
     """Return whether a surface is looked at near the places that are read, and not as a whole."""
-    return mesh.n_cells > WHOLE and flat_cells(mesh) is not None and GLYPH not in mesh.point_data
+    large = mesh.n_cells > WHOLE and GLYPH not in mesh.point_data
+    return large and DrawnTriangles.of(mesh) is not None
 
 
 def _inputs(
@@ -328,8 +329,8 @@ def part_on(
         more["lit"] = False
     # A key has no depth by which a cue could fade it.
     scene = scene.replace(depth_cue=None)
-    surface = flat_cells(mesh)
-    cells = subdivision.simplices(mesh) if surface is None else DrawnTriangles(surface)
+    drawn = DrawnTriangles.of(mesh)
+    cells = subdivision.simplices(mesh) if drawn is None else drawn
     kind: Kind = "surface" if cells.shape[1] == 3 else "line"
     if not len(cells):
         kind, cells = "point", np.arange(mesh.n_points)[:, np.newaxis]

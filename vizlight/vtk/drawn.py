@@ -10,6 +10,7 @@ from vtkmodules.vtkCommonDataModel import (
     VTK_QUAD,
     VTK_TRIANGLE,
     vtkCellArray,
+    vtkExplicitStructuredGrid,
     vtkPolyData,
     vtkUnstructuredGrid,
 )
@@ -22,6 +23,7 @@ from vizlight.vtk.cells import (
     as_vtk,
     bare_faces,
     connectivity,
+    dimensions,
     grid_cells,
     has_faces,
 )
@@ -51,23 +53,53 @@ class DrawnTriangles:
 
     def __init__(self, surface: vtkPolyData) -> None:
         before = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
-        self._cells: Indices | int = before
+        cells: Indices | int = before
         if surface.GetNumberOfStrips():
-            surface, self._cells = _without_strips(surface)
+            surface, cells = _without_strips(surface)
         kept = _are_faces(surface.GetPolys())
         if not kept.all():
             kept = np.broadcast_to(kept, surface.GetNumberOfPolys())
-            self._cells = self.cells_of(np.flatnonzero(kept))
+            cells = (cells if isinstance(cells, np.ndarray) else cells + np.arange(len(kept)))[kept]
             surface = bare_faces(surface, kept)
-        self._surface, polys = surface, surface.GetPolys()
-        self._ids = as_numpy(polys.GetConnectivityArray())
-        self._size = max(polys.IsHomogeneous(), 0)
-        self._offsets: Indices = np.zeros(0, np.intp)
-        if not self._size:
-            self._offsets = as_numpy(polys.GetOffsetsArray())
+        polys = surface.GetPolys()
+        size = max(polys.IsHomogeneous(), 0)
+        self._ids: Indices | _GridCorners = as_numpy(polys.GetConnectivityArray())
+        self._size, self._cells, self._points = size, cells, surface.GetPoints()
+        #: Number of polygons.
         self.polygons = polys.GetNumberOfCells()
-        #: As of an array of the corners.
-        self.shape = len(self._ids) - 2 * self.polygons, TRIANGLE
+        self._offsets = np.zeros(0, np.intp) if size else as_numpy(polys.GetOffsetsArray())
+
+    @classmethod
+    def of(cls, mesh: Dataset) -> DrawnTriangles | None:
+        """Return the triangles of a mesh whose faces stand in memory or in rows, else None.
+
+        It is a surface, a grid of plain polygons alone, or one of a single layer of points; what
+        has hidden cells is none of these.
+        """
+        if isinstance(mesh, vtkPolyData):
+            return cls(mesh) if has_faces(mesh) else None
+        if mesh.GetCellData().HasArray(GHOSTS) or mesh.GetPointData().HasArray(GHOSTS):
+            return None
+        sides = [count for count in dimensions(mesh) if count > 1]
+        if len(sides) == 2 and not isinstance(mesh, vtkExplicitStructuredGrid):
+            triangles = cls(vtkPolyData())
+            triangles._ids, triangles._size = _GridCorners(*sides), QUAD
+            triangles.polygons = mesh.GetNumberOfCells()
+            return triangles
+        if not isinstance(mesh, vtkUnstructuredGrid):
+            return None
+        kinds = {*as_numpy(mesh.GetDistinctCellTypesArray()).tolist()}
+        if not kinds or kinds - {VTK_TRIANGLE, VTK_QUAD, VTK_POLYGON}:
+            return None
+        surface = vtkPolyData()
+        surface.SetPoints(mesh.GetPoints())
+        surface.SetPolys(grid_cells(mesh))
+        return cls(surface)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Shape of an array of the corners."""
+        return len(self._ids) - 2 * self.polygons, TRIANGLE
 
     def __len__(self) -> int:
         return self.shape[0]
@@ -75,7 +107,7 @@ class DrawnTriangles:
     def __getitem__(self, rows: Rows, /) -> Indices:
         """Return the points at the corners of some triangles, shape (M, 3)."""
         if self._size == TRIANGLE:
-            triangles: Indices = self._ids.reshape(-1, TRIANGLE)[rows]
+            triangles: Indices = np.reshape(self._ids[:], (-1, TRIANGLE))[rows]
             return triangles
         polygon, place = self._places(rows)
         start, size = self._ends(polygon)
@@ -159,7 +191,7 @@ class DrawnTriangles:
         ids, ends = self.corners(names)
         cells, some = vtkCellArray(), vtkPolyData()
         cells.SetData(as_vtk(ends), as_vtk(ids))
-        some.SetPoints(self._surface.GetPoints())
+        some.SetPoints(self._points)
         some.SetPolys(cells)
         some.GetCellData().AddArray(as_vtk(np.arange(len(names)), "number"))
         split = vtkTriangleFilter()
@@ -175,22 +207,23 @@ class DrawnTriangles:
         return corners
 
 
-def flat_cells(mesh: Dataset) -> vtkPolyData | None:
-    """Return a mesh whose faces stand in memory polygon by polygon as a surface, else None.
+class _GridCorners:
+    """Points at the corners of the quadrilaterals of a grid, as an array of them without memory."""
 
-    It is a surface, or a grid of plain polygons alone, of which none is hidden.
-    """
-    if isinstance(mesh, vtkPolyData):
-        return mesh if has_faces(mesh) else None
-    if not isinstance(mesh, vtkUnstructuredGrid) or mesh.GetCellData().HasArray(GHOSTS):
-        return None
-    kinds = {*as_numpy(mesh.GetDistinctCellTypesArray()).tolist()}
-    if not kinds or kinds - {VTK_TRIANGLE, VTK_QUAD, VTK_POLYGON}:
-        return None
-    surface = vtkPolyData()
-    surface.SetPoints(mesh.GetPoints())
-    surface.SetPolys(grid_cells(mesh))
-    return surface
+    def __init__(self, width: int, height: int) -> None:
+        self._width, self._size = width, QUAD * (width - 1) * (height - 1)
+
+    def __len__(self) -> int:
+        return self._size
+
+    def __getitem__(self, index: Rows, /) -> Indices:
+        """Return the points at some corners; those of a quadrilateral stand around it."""
+        if isinstance(index, slice):
+            index = np.arange(*index.indices(self._size))
+        polygon, corner = np.divmod(index, QUAD)
+        row, column = np.divmod(polygon, self._width - 1)
+        points: Indices = column + (corner % 3 > 0) + self._width * (row + (corner > 1))
+        return points
 
 
 def _are_faces(polys: vtkCellArray) -> Bools:
