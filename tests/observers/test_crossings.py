@@ -194,6 +194,32 @@ def test_crossings_beside_a_third_line_and_flat_ones_are_left_out():
     assert order(end, *shot(end, line_width=3)) is None
 
 
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ([(0.98, -1, 2)], "no crossing without a third line was found; 1 crossing is beside one"),
+        (None, "no two lines are seen to cross at 30 degrees or more"),
+    ],
+)
+def test_a_picture_says_why_no_crossing_is_asked(more, words):
+    """The course of the lines and their values are read all the same."""
+    starts = [(1, -1, 1), *more] if more else []
+    across = [straight(start, np.multiply(start, (1, -1, 1))) for start in starts]
+    mesh = lines(straight((0, 0, 0), (3, 0, 0)), *across)
+    mesh["height"] = mesh.points[:, :2].sum(axis=1)
+    picture, camera = shot(mesh, scalars="height", ours=False, color=None, line_width=3)
+    key = {"scalars": "height", "key": ("viridis", mesh.get_data_range("height"))}
+    found = vizlight.legibility(
+        mesh, picture=picture, camera=camera, line_width=3, size_mm=SIZE_MM, samples=256, **key
+    )
+    assert found.order is None
+    assert f"note: order: not measured, since {words}" in str(found)
+    assert words in found.to_dict()["notes"][0]
+    assert found.value.median < 0.05
+    # All places of one line have one direction, of which nothing is read.
+    assert found.direction.median < 5 if more else "values" not in found.direction.reason
+
+
 def test_lines_that_bend_at_their_crossing_are_left_out():
     """Beside a bend a line is not where its direction at the crossing points."""
     bent = np.array([(0, -1, 0), (1, 0, 0), (0, 1, 0)])

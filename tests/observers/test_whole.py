@@ -117,17 +117,25 @@ def test_pictures_are_read_upright_and_without_their_opacity(tmp_path):
     for given in (picture, picture / 255, expected, tmp_path / "picture.png"):
         np.testing.assert_allclose(read_picture(given), expected)
     assert read_picture(np.zeros((8, 8, 3))).shape == (8, 8, 3)
-    wrong = np.full((9, 9, 3), np.nan)
-    for given in (
-        picture[..., :2],
-        picture[..., 0],
-        picture[:7],
-        picture[:, :7],
-        wrong,
-        1.1 + wrong,
-    ):
+    for given in (picture[..., :2], picture[..., 0], picture[:7], picture[:, :7]):
         with pytest.raises(ValueError, match="picture: expected"):
             read_picture(given)
+
+
+def test_values_beyond_a_picture_are_rounding_or_named():
+    gray = np.full((9, 9, 3), 0.5)
+    gray[0, 0, 0], gray[1, 1, 1] = 1 + 2e-10, -1e-5
+    read = read_picture(gray)
+    assert (read.min(), read.max()) == (0, 1)
+    np.testing.assert_array_equal(read, np.clip(gray, 0, 1))
+    words_of = {
+        1.0001: "from -1e-05 to 1.0001; clip", -2e-5: "from -2e-05 to 1", np.nan: "not finite",
+        np.inf: "not finite", 200.0: "to 200",
+    }  # fmt: skip
+    for value, words in words_of.items():
+        gray[2, 2, 2] = value
+        with pytest.raises(ValueError, match=f"picture: expected bytes.* {words}"):
+            read_picture(gray)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from vizlight.model import kernels
 from vizlight.verify.between import Places, are_unit
 from vizlight.vtk import hull, polylines
 from vizlight.vtk.bezier import as_lagrange
-from vizlight.vtk.cells import connectivity, drawn_triangles, has_faces
+from vizlight.vtk.cells import connectivity, has_faces
 from vizlight.vtk.cells import triangles as triangles_of
 
 if TYPE_CHECKING:
@@ -55,28 +55,6 @@ def simplices(mesh: pv.DataSet) -> Indices:
     corners = origin[corners]
     # Curved cells have points on their surface that are none of the mesh.
     return corners[(corners >= 0).all(axis=1)]
-
-
-def drawn(mesh: pv.DataSet) -> tuple[Indices, Indices | None]:
-    """Return triangles or segments as VTK draws them, and the cells of a surface they are from.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh of any cells, as for :func:`simplices`.
-
-    Returns
-    -------
-    ndarray of int, shape (M, 3) or (M, 2)
-        Points of the mesh.
-    ndarray of int, shape (M,), or None
-        Cells; None unless the mesh is a surface.
-    """
-    if not (isinstance(mesh, pv.PolyData) and has_faces(mesh)):
-        return simplices(mesh), None
-    corners, cell = drawn_triangles(mesh)
-    # Cells are numbered by VTK's kinds: vertices and lines first.
-    return corners, mesh.n_verts + mesh.n_lines + cell
 
 
 def as_polydata(mesh: pv.DataSet) -> pv.PolyData:

@@ -51,11 +51,14 @@ class Crossings(NamedTuple):
         Places in pixels from the upper left corner, to the right and down.
     front, back : ndarray of int, shape (N,)
         Segments of the nearer line and of the other.
+    left_out : int
+        Number of other places where lines cross: beside a third line, or where one ends.
     """
 
     at: Array
     front: Indices
     back: Indices
+    left_out: int = 0
 
 
 def crossings_of(lines: Segments, count: int, random: np.random.Generator) -> Crossings:
@@ -94,6 +97,7 @@ def crossings_of(lines: Segments, count: int, random: np.random.Generator) -> Cr
     keep = _near(lines, shown, front)
     for line, other in ((front, back), (back, front)):
         keep &= _straight(lines, at, line, other)
+    places = len(_first_of_each(at[keep]))
     for line, other in ((front, back), (back, front)):
         for side in _arms(lines, crossings, line, other):
             numbers = [_number(lines, places) for places in side]
@@ -103,7 +107,8 @@ def crossings_of(lines: Segments, count: int, random: np.random.Generator) -> Cr
             keep &= np.all([near | (n < 0) for near, n in zip(seen, numbers, strict=True)], axis=0)
     crossings = _taken(crossings, keep)
     crossings = _taken(crossings, _clear(lines, crossings))
-    return _taken(crossings, _first_of_each(crossings.at))
+    crossings = _taken(crossings, _first_of_each(crossings.at))
+    return crossings._replace(left_out=places - len(crossings.at))
 
 
 def answers(crossings: Crossings, lines: Segments, seen: SeenPicture, noise: float) -> Array:
@@ -210,7 +215,7 @@ def _clear(lines: Segments, crossings: Crossings) -> Bools:
         for right in range(-largest, largest + 1):
             rows = np.flatnonzero((max(abs(down), abs(right)) <= reach) & clear)
             shown = _number(lines, crossings.at[rows] + (right, down))
-            front, back = (_near(lines, shown, line[rows]) for line in crossings[1:])
+            front, back = (_near(lines, shown, line[rows]) for line in crossings[1:3])
             clear[rows] = (shown < 0) | front | back
     return clear
 

@@ -19,7 +19,7 @@ from vizlight.mesh.polylines import backdrop
 from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.figures import Legibility
 from vizlight.observers.measure import measure
-from vizlight.observers.samples import camera_of, part_on
+from vizlight.observers.samples import camera_of, is_large, part_on
 from vizlight.observers.whole import PRINT, read_picture, reading
 from vizlight.scene import Light, Scene, View
 from vizlight.scene.presets import required_scene
@@ -104,7 +104,8 @@ def legibility(
         Eye of the picture that is drawn. Default: the view of the scene, else the isometric view
         that shows the whole mesh. A camera is taken as it is.
     picture : array_like of shape (H, W, 3), or path, optional
-        Picture of the mesh, by any program, in bytes or from 0 to 1, or its file.
+        Picture of the mesh, by any program, in bytes or from 0 to 1 (1e-5 beyond is taken for
+        rounding), or its file.
     camera : pyvista.Camera, optional
         Camera of ``picture``, which fills it: of a picture with a margin for its key, such as that
         of a look, pass the part without it, or read the plotter itself.
@@ -180,7 +181,9 @@ def legibility(
     the pixels that it covers are compared with those that it would cover if it were turned round:
     the sense is right where the former stand out more.
 
-    A reader of a surface with lines on it looks between them, as far as 10 arc minutes away.
+    A reader of a surface with lines on it looks between them, as far as 10 arc minutes away. Of a
+    large surface normals are computed near the places that are read, and ``feature_angle="auto"``
+    looks for creases there.
 
     Bits are the logarithmic score of the reader's belief, ``log2(A) + E[log2 q]`` for A
     candidates, at the best share of lapses, less the score of the same answers about other places
@@ -288,10 +291,16 @@ def _parts(
     light |= {name: value for name, value in drawing.items() if name in LIGHT}
     options = LightOptions(**light)
     shown = [(block, path) for block, path in blocks.check(mesh) if block.n_points]
+    smooth = dataclasses.replace(options, feature_angle=None)
     # Rows of values that are no array of the mesh do not fit points that are split.
     if lit and isinstance(scalars, str | None):
-        shown = [(with_sharp_edges(block, options), path) for block, path in shown]
-    options = dataclasses.replace(options, feature_angle=None)
+        # The edges of a large surface are looked for near the places that are read.
+        shown = [
+            (block if is_large(block) else with_sharp_edges(block, options), path)
+            for block, path in shown
+        ]
+    else:
+        options = smooth
     values: list[Raw | None] = [None] * len(shown)
     table = None
     if bar is not None:
@@ -303,8 +312,9 @@ def _parts(
     width = float(drawing.get("line_width", 1.0))
     return [
         part_on(
-            block, scene.replace(view=view), options, path, lit=lit, values=array, table=table,
-            width=width, diameter=stroke_of(block, {"line_width": width} | drawing).diameter,
+            block, scene.replace(view=view), options if is_large(block) else smooth, path,
+            lit=lit, values=array, table=table, width=width,
+            diameter=stroke_of(block, {"line_width": width} | drawing).diameter,
         )
         for (block, path), array in zip(shown, values, strict=True)
     ]  # fmt: skip

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pyvista as pv
 from scipy.ndimage import gaussian_filter, uniform_filter
 
 from vizlight.model.kernels import unit_rows
@@ -16,6 +15,8 @@ from vizlight.observers.samples import dots
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    import pyvista as pv
 
     from vizlight._types import Array, Bools, Indices
     from vizlight.observers.eye import Eye, SeenPicture
@@ -94,7 +95,7 @@ def segments_of(parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera) ->
         number[pixels.row[shows], pixels.column[shows]] = count + pixels.cell[shows]
         points = np.asarray(part.inputs.points[:], dtype=np.float64)
         places = in_pixels(camera, pixels.size, points)
-        cells = part.cells
+        cells = part.cells[:]
         ends.append(places[cells])
         widths.append(part.drawn.widths(camera, height))
         breaks.append(np.insert(cells[1:, 0] != cells[:-1, 1], 0, True))
@@ -291,7 +292,7 @@ def _turned(part: SeenMesh) -> tuple[Cells, Array, Array]:
         np.asarray(rows[:], dtype=np.float64) for rows in (part.inputs.points, part.inputs.tangents)
     )
     glyph = np.full(len(points), -1)
-    glyph[part.cells] = part.glyph[:, np.newaxis]
+    glyph[part.cells[:]] = part.glyph[:, np.newaxis]
     used = glyph >= 0
     number, ways = glyph[used], unit_rows(vectors[used])
     mean, way = means(points[used], number), means(ways, number)
@@ -301,8 +302,7 @@ def _turned(part: SeenMesh) -> tuple[Cells, Array, Array]:
     np.maximum.at(high, number, along)
     middle = mean + ((low + high) / 2)[:, np.newaxis] * way
     end = middle + ((high - low) / 2)[:, np.newaxis] * way
-    turned = pv.vtk_points(2 * middle[glyph] - points)
-    return part.drawn._replace(points=turned), middle, end
+    return part.drawn._replace(points=2 * middle[glyph] - points), middle, end
 
 
 def _numbered(pixels: Pixels, numbers: list[Indices]) -> Indices:

@@ -207,7 +207,7 @@ def measure(
     ahead, lengths = _of_glyphs(glyphs, lines, seen, eye)
     thing = _things(pixels, parts, lines, glyphs, eye)
     random = np.random.default_rng(seed)
-    has_marks = any(part.by_form and part.inputs.tangents is not None for part in parts)
+    has_marks = any(part.by_form and part.has_tangents for part in parts)
     grain = grain_of(seen, eye, seed) if has_marks else np.zeros_like(seen.colors)
     has = _Seen(pixels, number, camera, eye, thing, *_as_things(seen, grain, pixels, thing), random)
     chosen = np.sort(random.permutation(len(pixels.row))[:samples])
@@ -226,6 +226,8 @@ def measure(
     if lines is not None:
         at_crossings = crossings.crossings_of(lines, samples, np.random.default_rng(seed))
         figures["order"] = _order(crossings.answers(at_crossings, lines, seen, noise))
+        if figures["order"] is None:
+            reader.notes.append(_without_order(at_crossings.left_out))
         strokes = _of_strokes(*strokes_of(lines, seen, eye), noise)
         answers = np.concatenate([answers, strokes])
     figures["sense"] = _sense(answers)
@@ -264,8 +266,13 @@ class _Seen(NamedTuple):
             self.things, chosen.row, chosen.column, self.random, self.eye.noise, share
         )
         beside = [_beside(pixels, self.number, ids, step) for step in ((0, 1), (1, 0))]
-        here = sample(part, chosen, camera)
-        right, up = (sample(part, pixels.take(rows), camera) for rows in beside)
+        looked_at = [chosen, *map(pixels.take, beside)]
+        cells, cell = np.unique([some.cell for some in looked_at], return_inverse=True)
+        near = part.near(cells)
+        here, right, up = (
+            sample(near, some._replace(cell=own), camera)
+            for some, own in zip(looked_at, cell.reshape(3, -1), strict=True)
+        )
         course = np.zeros(len(ids))
         if here.tangents is not None and here.has_one_tangent:
             way = courses(camera, pixels.size, here.points, here.tangents[:, 0])
@@ -379,6 +386,17 @@ def _order(answers: Array) -> Order | None:
     return Order(**_two_sided(answers, "draw halos, or lines of colours that differ"))
 
 
+def _without_order(left_out: int) -> str:
+    """Return why a picture of lines has no figure of order."""
+    if not left_out:
+        return "order: not measured, since no two lines are seen to cross at 30 degrees or more"
+    crossings = "crossing is" if left_out == 1 else "crossings are"
+    return (
+        f"order: not measured, since no crossing without a third line was found; {left_out} "
+        f"{crossings} beside one, or where a line ends"
+    )
+
+
 def _of_strokes(ink: Array, light: Array, noise: float) -> Array:
     """Return answers of sense by the differences of both ends of strokes: by ink or by light."""
     answers = []
@@ -469,15 +487,15 @@ class _PictureReader:
         if len(finite) and float(np.median(finite)) * minutes < FAST:
             turns = max(1, round(float(np.median(finite))))
             return f"the data turn within {turns} pixels; show less of them, or lines"
-        if question in ("direction", "heading", "shape") and any(
-            p.part.values is not None for p in groups
-        ):
+        by_form = question == "direction" and groups[0].part.by_form
+        by_light = question in ("direction", "heading", "shape") and not by_form
+        if by_light and any(p.part.values is not None for p in groups):
             return "the colours show values; draw the light without scalars"
         deviation = np.concatenate([p.colors.deviation for p in groups])
         colors = np.concatenate([p.colors.lab for p in groups])
         if float(np.median(deviation)) > 3 * self.eye.noise:
             return "what is drawn is finer than an eye resolves; draw it wider, or less of it"
-        if question == "direction" and groups[0].part.by_form:
+        if by_form:
             return "marks are too fine or too faint, cross, or do not follow the data"
         # The standard deviation by the 10 % and 90 % quantiles, but for places at borders.
         spread = np.ptp(np.quantile(colors, (0.1, 0.9), axis=0), axis=0) / 2.563

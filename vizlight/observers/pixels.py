@@ -8,9 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pyvista as pv
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 - what draws registers itself
-from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+from vtkmodules.vtkCommonCore import vtkPoints, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkBoundingBox, vtkCellArray, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
@@ -20,20 +19,24 @@ from vizlight.draw.cameras import footprint
 from vizlight.draw.live import in_view
 from vizlight.draw.strokes import lay_on_surfaces
 from vizlight.model.kernels import unit_rows
+from vizlight.vtk.arrays import GridPoints
 from vizlight.vtk.cells import as_numpy, as_vtk
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
-    from vtkmodules.vtkCommonCore import vtkPoints
+    import pyvista as pv
 
-    from vizlight._types import Array, Bools, Indices
+    from vizlight._types import Array, Bools, Indices, Slice
     from vizlight.shading.display import Bytes
+    from vizlight.shading.inputs import ArraySource
+    from vizlight.vtk.drawn import DrawnTriangles
 
-#: Bits of the three channels.
-BITS = 24
 #: Number of cells that are drawn at once, so that memory goes by pixels.
 BLOCK = 1 << 19
+#: Number of times by which the points between the first and the last of some cells may be more than
+#: their corners, so that all of them are taken.
+SPARSE = 2
 
 
 class Cells(NamedTuple):
@@ -41,9 +44,9 @@ class Cells(NamedTuple):
 
     Attributes
     ----------
-    points : vtkPoints
+    points : ArraySource, shape (N, 3)
         Points of the mesh.
-    corners : ndarray of int, shape (C, s)
+    corners : ndarray of int or DrawnTriangles, shape (C, s)
         Points, segments or triangles.
     width : float
         Width of points and of lines in pixels, the least width of lines that have a diameter.
@@ -51,60 +54,70 @@ class Cells(NamedTuple):
         Diameter of lines in the unit of the mesh.
     """
 
-    points: vtkPoints
-    corners: Indices
+    points: ArraySource
+    corners: Indices | DrawnTriangles
     width: float
     diameter: float | None = None
 
-    def data(self) -> vtkPolyData:
-        """Return the points, segments or triangles as a mesh of VTK."""
-        kind = self.corners.shape[1]
+    def data(self, rows: Slice, camera: pv.Camera, height: int) -> vtkPolyData:
+        """Return some points, segments or triangles as a mesh of VTK; lines of a diameter as bands.
+
+        Its points are those of these cells.
+        """
+        corners = np.asarray(self.corners[rows])
+        low, high = int(corners.min()), int(corners.max()) + 1
+        points: Array
+        if high - low > SPARSE * corners.size:
+            ids, corners = np.unique(corners, return_inverse=True)
+            points, corners = rows_of(self.points, ids), corners.reshape(-1, self.corners.shape[1])
+        else:
+            points, corners = np.asarray(self.points[low:high]), corners - low
+        if self.diameter is not None:
+            points, corners = self._bands(points, corners, camera, height)
+        kind = corners.shape[1]
         cells, data = vtkCellArray(), vtkPolyData()
-        cells.SetData(kind, as_vtk(self.corners.ravel()))
-        data.SetPoints(self.points)
+        cells.SetData(kind, as_vtk(corners.astype(np.int32).ravel()))
+        places = vtkPoints()
+        places.SetData(as_vtk(points))
+        data.SetPoints(places)
         (data.SetVerts, data.SetLines, data.SetPolys)[kind - 1](cells)
         return data
-
-    def blocks(self) -> Iterator[tuple[Cells, int]]:
-        """Yield the cells, many of them in parts with points of their own, and each first one."""
-        count = len(self.corners)
-        for block in _pool.blocks(count, BLOCK):
-            if block == slice(0, count):
-                yield self, 0
-                continue
-            ids, corners = np.unique(self.corners[block], return_inverse=True)
-            points = pv.vtk_points(as_numpy(self.points.GetData())[ids])
-            corners = corners.reshape(-1, self.corners.shape[1]).astype(np.int32)
-            yield self._replace(points=points, corners=corners), block.start
 
     def widths(self, camera: pv.Camera, height: int) -> Array:
         """Return the widths in pixels at the corners' beginnings, in a picture of some height."""
         count = len(self.corners)
         if self.diameter is None:
             return np.full(count, self.width)
-        points = as_numpy(self.points.GetData()).astype(np.float64)[self.corners[:, 0]]
+        points = np.asarray(self.points[:], dtype=np.float64)[self.corners[:, 0]]
         return np.asarray(np.maximum(self.diameter / footprint(camera, points, height), self.width))
 
-    def bands(self, camera: pv.Camera, height: int) -> Cells:
-        """Return lines of a diameter as bands that face the eye, two triangles for each segment.
+    def _bands(
+        self, points: Array, corners: Indices, camera: pv.Camera, height: int
+    ) -> tuple[Array, Indices]:
+        """Return lines as bands that face the eye, two triangles for each segment.
 
         They are nearer to the eye by half of their width, as a tube is.
         """
-        points = as_numpy(self.points.GetData()).astype(np.float64)
+        points = points.astype(np.float64)
         size = footprint(camera, points, height)
         toward = toward_eye(camera, points)
         radius = np.maximum(self.diameter or 0.0, self.width * size)[:, np.newaxis] / 2
-        start, end = self.corners.T
+        start, end = corners.T
         along = points[end] - points[start]
-        corners = []
+        places = []
         for ids in (start, end):
             across = radius[ids] * unit_rows(np.cross(toward[ids], along))
             near = points[ids] + radius[ids] * toward[ids]
-            corners += [near - across, near + across]
+            places += [near - across, near + across]
         first = np.arange(len(start)) * 4
         triangles = np.stack([first, first + 1, first + 2, first + 1, first + 3, first + 2], axis=1)
-        bands = pv.vtk_points(np.stack(corners, axis=1).reshape(-1, 3))
-        return Cells(bands, triangles.reshape(-1, 3), self.width)
+        return np.stack(places, axis=1).reshape(-1, 3), triangles.reshape(-1, 3)
+
+
+def rows_of(source: ArraySource, ids: Indices) -> Array:
+    """Return rows of points or of an array by their numbers."""
+    rows: Array = np.asarray(source.at(ids) if isinstance(source, GridPoints) else source[:][ids])
+    return rows
 
 
 class Pixels(NamedTuple):
@@ -170,7 +183,6 @@ def visible(
     BackendError
         If no OpenGL library can draw here.
     """
-    starts = np.cumsum([0, *(len(mesh.corners) for mesh in meshes)])
     width, height = size
     with window_class(choose_backend()):
         window = vtkRenderWindow()
@@ -182,27 +194,74 @@ def visible(
     renderer.SetActiveCamera(camera)
     window.AddRenderer(renderer)
     lay_on_surfaces(renderer)
-    renderer.ResetCameraClippingRange(_box(meshes, occluders))
-    number = np.zeros((height, width), dtype=np.int64)
-    # A picture has 24 bits of a cell's number; more cells take more pictures.
-    for shift in range(0, max(int(starts[-1]).bit_length(), 1), BITS):
-        drawings = _drawings(meshes, starts.tolist(), shift, camera, height, occluders)
-        for i, actors in enumerate(drawings):
-            renderer.RemoveAllViewProps()
-            for actor in actors:
-                renderer.AddActor(actor)
-            # What was drawn before stays, with its depth.
-            renderer.SetPreserveColorBuffer(i > 0)
-            renderer.SetPreserveDepthBuffer(i > 0)
-            rgb = frame_of(window).astype(np.int64)
-        number |= (rgb[..., 0] << 16 | rgb[..., 1] << 8 | rgb[..., 2]) << shift
+    blocks = [
+        _Block(part, mesh, rows)
+        for part, mesh in enumerate(meshes)
+        for rows in _pool.blocks(len(mesh.corners), BLOCK)
+    ]
+    box = vtkBoundingBox()
+    for occluder in occluders:
+        box.AddBounds(occluder.GetBounds())
+    drawings = _drawings(blocks)
+    # Cells of several drawings are made again for theirs, since all of them take more memory.
+    made: list[vtkPolyData] = []
+    for block in blocks:
+        data = block.mesh.data(block.rows, camera, height)
+        bounds = [0.0] * 6
+        data.GetCellsBounds(bounds)
+        box.AddBounds(bounds)
+        made += [data] if len(drawings) == 1 else []
+    bounds = [0.0] * 6
+    box.GetBounds(bounds)
+    renderer.ResetCameraClippingRange(bounds)
+    part, cell = np.full((2, height, width), -1, dtype=np.int32)
+    for i, drawing in enumerate(drawings):
+        renderer.RemoveAllViewProps()
+        for occluder in occluders if i == 0 else ():
+            renderer.AddActor(occluder)
+        starts = np.cumsum([1, *(block.size for block in drawing)])
+        for k, block in enumerate(drawing):
+            data = made[k] if made else block.mesh.data(block.rows, camera, height)
+            renderer.AddActor(_actor(block, data, int(starts[k])))
+        # What was drawn before hides cells by its depth.
+        renderer.SetPreserveDepthBuffer(i > 0)
+        rgb = frame_of(window).astype(np.int32)
+        number = rgb[..., 0] << 16 | rgb[..., 1] << 8 | rgb[..., 2]
+        shows = (number > 0) & (number < starts[-1])
+        which = np.searchsorted(starts, number[shows], side="right") - 1
+        part[shows] = np.array([block.part for block in drawing])[which]
+        first = np.array([block.rows.start for block in drawing])
+        cell[shows] = number[shows] - starts[which] + first[which]
     window.Finalize()
     # From the lowest row up: places are drawn from them at random.
-    from_below, column = np.nonzero(((number > 0) & (number <= starts[-1]))[::-1])
+    from_below, column = np.nonzero(part[::-1] >= 0)
     row = height - 1 - from_below
-    cell = number[row, column] - 1
-    which = np.searchsorted(starts, cell, side="right") - 1
-    return Pixels(row, column, which, cell - starts[which], size)
+    which, number = (each[row, column].astype(np.intp) for each in (part, cell))
+    return Pixels(row, column, which, number, size)
+
+
+class _Block(NamedTuple):
+    """Some cells of one of several meshes, which are drawn at once."""
+
+    part: int
+    mesh: Cells
+    rows: Slice
+
+    @property
+    def size(self) -> int:
+        return self.rows.stop - self.rows.start
+
+
+def _drawings(blocks: list[_Block]) -> list[list[_Block]]:
+    """Return the blocks of each drawing, twice ``BLOCK`` cells at most."""
+    drawings, count = list[list[_Block]](), BLOCK
+    for block in blocks:
+        if count >= BLOCK:
+            drawings.append([])
+            count = 0
+        drawings[-1].append(block)
+        count += block.size
+    return drawings
 
 
 def frame_of(window: vtkRenderWindow) -> Bytes:
@@ -243,48 +302,13 @@ def toward_eye(camera: pv.Camera, points: Array) -> Array:
     return unit_rows(np.array(camera.GetPosition()) - points)
 
 
-def _box(meshes: Sequence[Cells], occluders: Sequence[vtkActor]) -> tuple[float, ...]:
-    """Return the box around the cells of meshes and around actors."""
-    box = vtkBoundingBox()
-    for mesh in meshes:
-        bounds = [0.0] * 6
-        mesh.data().GetCellsBounds(bounds)
-        around = vtkBoundingBox(bounds)
-        around.Inflate((mesh.diameter or 0.0) / 2)
-        box.AddBox(around)
-    for occluder in occluders:
-        box.AddBounds(occluder.GetBounds())
-    bounds = [0.0] * 6
-    box.GetBounds(bounds)
-    return tuple(bounds)
-
-
-def _drawings(
-    meshes: Sequence[Cells], starts: Sequence[int], shift: int, camera: pv.Camera, height: int,
-    occluders: Sequence[vtkActor],
-) -> Iterator[list[vtkActor]]:  # fmt: skip
-    """Yield the actors that are drawn at once, first those that hide cells."""
-    actors, count = [*occluders], 0
-    for mesh, start in zip(meshes, starts, strict=False):
-        for cells, first in mesh.blocks():
-            if count >= BLOCK:
-                yield actors
-                actors, count = [], 0
-            actors.append(_actor(cells, start + first, shift, camera, height))
-            count += len(cells.corners)
-    yield actors
-
-
-def _actor(
-    mesh: Cells, start: int, shift: int, camera: pv.Camera, height: int
-) -> vtkActor:  # fmt: skip
-    """Return a mesh with the numbers of its cells, from 1, as flat colours; 0 is background."""
-    number = np.arange(start + 1, start + 1 + len(mesh.corners)) >> shift
-    if mesh.diameter is not None:
-        mesh = mesh.bands(camera, height)
+def _actor(block: _Block, data: vtkPolyData, start: int) -> vtkActor:
+    """Return cells with their numbers, from ``start``, as flat colours; 0 is background."""
+    number = np.arange(start, start + block.size, dtype=np.int32)
+    if block.mesh.diameter is not None:
+        # A segment is two triangles.
         number = np.repeat(number, 2)
     colors = np.stack([number >> place & 255 for place in (16, 8, 0)], axis=1).astype(np.uint8)
-    data = mesh.data()
     data.GetCellData().SetScalars(as_vtk(colors, "number"))
     mapper = vtkPolyDataMapper()
     mapper.SetInputData(data)
@@ -295,6 +319,6 @@ def _actor(
     style = actor.GetProperty()
     # The colours are numbers, which light must not change.
     style.LightingOff()
-    style.SetLineWidth(mesh.width)
-    style.SetPointSize(mesh.width)
+    style.SetLineWidth(block.mesh.width)
+    style.SetPointSize(block.mesh.width)
     return actor

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw.cameras import VIEW_ANGLE, camera_on
@@ -15,26 +14,32 @@ from vizlight.filters.lighting import part_of
 from vizlight.mesh import subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import length_rows, unit_rows
-from vizlight.observers.pixels import Cells, toward_eye
+from vizlight.observers.near import near
+from vizlight.observers.pixels import Cells, rows_of, toward_eye
 from vizlight.scene import Scene, View
 from vizlight.scene.view import as_view, is_camera
 from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.verify.between import Places, interpolated, mean_spaces
+from vizlight.vtk.arrays import points_of
+from vizlight.vtk.drawn import DrawnTriangles
 
 if TYPE_CHECKING:
     from typing import TypeAlias
 
+    import pyvista as pv
+
     from vizlight._types import Array, Bools, Given, Indices, Keywords, Raw, Rows
     from vizlight.observers.pixels import Pixels
     from vizlight.scene.conversion import AnyView
-    from vizlight.shading.inputs import ArraySource
 
     Kind: TypeAlias = Literal["surface", "line", "point"]
 
 #: Arrays of VTK: of streamlines, what grows in the sense of the flow; of glyphs, their vectors.
 TIME, GLYPH = "IntegrationTime", "GlyphVector"
+#: Number of cells of a surface up to which it is looked at as a whole.
+WHOLE = 1 << 17
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -194,17 +199,21 @@ class SeenMesh:
         Kind of its cells.
     mesh : pyvista.DataSet
         Mesh.
-    cells : ndarray of int, shape (C, s)
+    cells : ndarray of int or DrawnTriangles, shape (C, s)
         Triangles, segments or points.
     inputs : ShadingInputs
-        Points, tangents and normals. A surface has normals also where its light does not depend
-        on them: a reader sees them as its shape.
+        Points, tangents and normals. A lit surface has normals also where its light does not depend
+        on them: a reader sees them as its shape. Of a large surface the points alone.
     options : ShadingOptions
         How the mesh is lit.
     scene : Scene
         Scene with a view: the colours of the picture mean its light.
     lit : bool
         Whether the colours of the picture mean light.
+    light : LightOptions
+        How the mesh is lit, by the names of its arrays.
+    path : str
+        Name of the mesh among others, for errors.
     values : ndarray, shape (N,), or None
         Values of the points that colours show; of the cells if they are flat.
     flat : bool
@@ -226,10 +235,12 @@ class SeenMesh:
 
     kind: Kind
     mesh: pv.DataSet
-    cells: Indices
+    cells: Indices | DrawnTriangles
     inputs: ShadingInputs
     options: ShadingOptions
     scene: Scene
+    light: LightOptions = dataclasses.field(default_factory=LightOptions)
+    path: str = ""
     lit: bool = True
     values: Raw | None = None
     flat: bool = False
@@ -246,13 +257,48 @@ class SeenMesh:
         return self.kind == "line" or not self.lit
 
     @property
+    def has_tangents(self) -> bool:
+        """Whether the mesh has tangents."""
+        return self.inputs.tangents is not None or self.light.tangents is not None
+
+    @property
     def drawn(self) -> Cells:
         """Points and cells to draw."""
-        if isinstance(self.mesh, pv.PolyData | pv.PointSet | pv.UnstructuredGrid):
-            points = self.mesh.GetPoints()
-        else:
-            points = pv.vtk_points(np.asarray(self.inputs.points[:]))
-        return Cells(points, self.cells, self.width, self.diameter)
+        return Cells(points_of(self.mesh, None), self.cells, self.width, self.diameter)
+
+    def near(self, cells: Indices) -> SeenMesh:
+        """Return the mesh with some of the cells alone, and with all inputs at their points."""
+        values = self.values
+        if values is not None and self.flat:
+            assert isinstance(self.cells, DrawnTriangles)
+            values = values[self.cells.cells(cells)]
+        if not (isinstance(self.cells, DrawnTriangles) and is_large(self.mesh)):
+            return dataclasses.replace(self, cells=self.cells[cells], values=values)
+        around = near(self.mesh, self.cells, cells, self.light)
+        inputs = _inputs(around.mesh, self.path, self.scene, around.light, lit=self.lit)
+        if values is not None and not self.flat:
+            values = values[around.origin]
+        return dataclasses.replace(
+            self, mesh=around.mesh, cells=around.corners, inputs=inputs, values=values
+        )
+
+
+def is_large(mesh: pv.DataSet) -> bool:
+    """Return whether a surface is looked at near the places that are read, and not as a whole."""
+    large = mesh.n_cells > WHOLE and GLYPH not in mesh.point_data
+    return large and DrawnTriangles.of(mesh) is not None
+
+
+def _inputs(
+    mesh: pv.DataSet, path: str, scene: Scene, light: LightOptions, *, lit: bool
+) -> ShadingInputs:
+    """Return the points, the tangents and, where colours mean light, the normals of a surface."""
+    if light.tangents is None and not lit:
+        return ShadingInputs(points=points_of(mesh, light.positions))
+    # Normals are read beside the tangents: they are the shape that a reader sees. Surfaces without
+    # tangents have their attached shadow in any case.
+    conditioned = lit and light.tangents is not None
+    return part_of(mesh, path, scene, dataclasses.replace(light, conditioned=conditioned)).inputs
 
 
 def part_on(
@@ -283,25 +329,26 @@ def part_on(
         more["lit"] = False
     # A key has no depth by which a cue could fade it.
     scene = scene.replace(depth_cue=None)
-    cells, owner = subdivision.drawn(mesh)
-    if more.get("flat"):
-        more["values"] = more["values"][owner]
+    drawn = DrawnTriangles.of(mesh)
+    cells = subdivision.simplices(mesh) if drawn is None else drawn
     kind: Kind = "surface" if cells.shape[1] == 3 else "line"
     if not len(cells):
         kind, cells = "point", np.arange(mesh.n_points)[:, np.newaxis]
     # Shares of light that reach a place are the picture's to show, and not of the key.
-    of_key = dataclasses.replace(options, occlusion=None, bundle=False)
-    if kind == "surface":
-        # Normals are then read beside the tangents: they are the shape that a reader sees. Surfaces
-        # without tangents have their attached shadow in any case.
-        of_key = dataclasses.replace(of_key, conditioned=options.tangents is not None)
-    inputs = part_of(mesh, path, scene, of_key).inputs.of_faces()
-    inputs = dataclasses.replace(inputs, occlusion=None, transmittance=None, shadow=None)
+    light = dataclasses.replace(options, occlusion=None, bundle=False)
+    if kind == "surface" and is_large(mesh):
+        inputs = ShadingInputs(points=points_of(mesh, options.positions))
+    elif kind == "surface":
+        inputs = _inputs(mesh, path, scene, light, lit=more.get("lit", True))
+    else:
+        inputs = part_of(mesh, path, scene, light).inputs
+    inputs = dataclasses.replace(inputs.of_faces(), occlusion=None, transmittance=None, shadow=None)
     # In float64, so that no error of the engine is taken for one of the reader.
     exact = ShadingOptions.of(vars(options) | {"precision": "float64", "components": False})
-    ahead = None if is_glyphs or kind != "line" else _ahead(mesh, cells, inputs, options)
+    ahead = None if is_glyphs or kind != "line" else _ahead(mesh, cells[:], inputs, options)
     return SeenMesh(
         kind=kind, mesh=mesh, cells=cells, inputs=inputs, options=exact, scene=scene, ahead=ahead,
+        light=light, path=path,
         glyph=_glyphs(mesh, cells) if is_glyphs else None, **more,
     )  # fmt: skip
 
@@ -313,13 +360,13 @@ def of_glyphs(mesh: pv.DataSet, options: LightOptions) -> LightOptions:
     return options
 
 
-def _glyphs(mesh: pv.DataSet, cells: Indices) -> Indices:
+def _glyphs(mesh: pv.DataSet, cells: Indices | DrawnTriangles) -> Indices:
     """Return the numbers of the glyphs that cells belong to.
 
     VTK writes the points of one glyph after those of another, as many of each. In another mesh,
     such as one with split sharp edges, glyphs of equal vectors count as one.
     """
-    vectors = np.asarray(mesh.point_data[GLYPH])
+    vectors, cells = np.asarray(mesh.point_data[GLYPH]), cells[:]
     starts = np.flatnonzero((vectors[1:] != vectors[:-1]).any(axis=1)) + 1
     # Neighbours may have equal vectors.
     number = np.arange(len(vectors)) // np.diff([0, *starts, len(vectors)]).min()
@@ -341,11 +388,6 @@ def _ahead(
     vectors = np.asarray(inputs.tangents[:], dtype=np.float64)[cells].sum(axis=1)
     points = np.asarray(inputs.points[:], dtype=np.float64)
     return np.asarray(np.sign(dots(vectors, points[cells[:, 1]] - points[cells[:, 0]])))
-
-
-def rows_of(source: ArraySource, ids: Indices) -> Raw:
-    """Return rows of points or of an array by their numbers."""
-    return np.asarray(source[:])[ids]
 
 
 def camera_of(

@@ -45,6 +45,8 @@ PRINT = 85.0, 300.0, 400.0
 SCREEN_DISTANCE = 600.0
 #: VTK's number of the mode in which scalars are colours, in bytes or not.
 DIRECT = 2
+#: How far numbers of a picture may be beyond 0 and 1 by rounding, as after a blur in float32.
+BEYOND = 1e-5
 #: Opacity below which an actor does not hide what is behind it.
 HIDES = 0.5
 
@@ -194,6 +196,8 @@ def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Se
     lit = live.scalars is None or "values" in colors
     if not lit and not has_lines_only(mesh) and GLYPH not in mesh.point_data:
         return None
+    # What is drawn has its sharp edges already.
+    options = dataclasses.replace(options, feature_angle=None)
     placed, options = moved(mesh, options, matrix_of(actor.GetMatrix()))
     return part_on(
         placed, scene, options, lit=lit, width=width, diameter=live.stroke.diameter, **colors
@@ -357,6 +361,8 @@ def _occluder(actor: vtkActor, pixel: float) -> vtkActor:
 def read_picture(picture: object) -> Array:
     """Return a picture from an array or a file as sRGB values, shape (H, W, 3) from 0 to 1.
 
+    Values beyond that by ``BEYOND`` at most, such as by rounding, are taken for 0 and 1.
+
     Raises
     ------
     TypeError, ValueError
@@ -379,6 +385,10 @@ def read_picture(picture: object) -> Array:
         raise ValueError(_check.message("picture", expected, f"shape {array.shape}"))
     scale = 255.0 if array.dtype == np.uint8 else 1.0
     rgb = np.asarray(array[..., :3], dtype=np.float64) / scale
-    if not np.isfinite(rgb).all() or rgb.min() < 0 or rgb.max() > 1:
-        raise ValueError(_check.message("picture", "bytes, or numbers from 0 to 1", "others"))
-    return rgb
+    low, high = float(rgb.min()), float(rgb.max())
+    if not (low >= -BEYOND and high <= 1 + BEYOND):
+        finite = math.isfinite(low) and math.isfinite(high)
+        got = f"numbers from {low:.6g} to {high:.6g}" if finite else "numbers that are not finite"
+        remedy = "clip them, or divide them by the number of white"
+        raise ValueError(_check.message("picture", "bytes, or numbers from 0 to 1", got, remedy))
+    return np.clip(rgb, 0.0, 1.0)

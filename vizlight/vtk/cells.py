@@ -272,42 +272,6 @@ def triangles(surface: vtkPolyData) -> Indices:
     return corners.astype(np.int32 if surface.GetNumberOfPoints() < 2**31 else np.intp)
 
 
-def drawn_triangles(surface: vtkPolyData) -> tuple[Indices, Indices]:
-    """Return the corners of the triangles of a surface as VTK's renderer draws it.
-
-    It halves all quadrilaterals from their first corner to their third, and not by the shorter
-    diagonal.
-
-    Returns
-    -------
-    ndarray of int, shape (M, 3)
-        Points.
-    ndarray of int, shape (M,)
-        Polygons that the triangles are taken from, and strips after them.
-    """
-    ids, offsets = connectivity(surface.GetPolys())
-    if not surface.GetNumberOfStrips() and surface.GetPolys().IsHomogeneous() == _TRIANGLE:
-        return ids.reshape(-1, _TRIANGLE), np.arange(len(offsets) - 1, dtype=np.int32)
-    is_quad = np.diff(offsets) == _QUAD
-    quads = ids[offsets[:-1][is_quad, np.newaxis] + np.arange(_QUAD)]
-    number = np.append(
-        np.flatnonzero(~is_quad), len(is_quad) + np.arange(surface.GetNumberOfStrips())
-    )
-    rest = bare_faces(surface, ~is_quad)
-    rest.GetCellData().AddArray(as_vtk(number, "number"))
-    split = vtkTriangleFilter()
-    split.SetInputData(rest)
-    split.Update()
-    output = split.GetOutput()
-    corners = connectivity(output.GetPolys())[0].reshape(-1, 3)
-    numbers = as_numpy(output.GetCellData().GetArray("number"))
-    halves = np.flatnonzero(is_quad)
-    return (
-        np.concatenate([corners, quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]),
-        np.concatenate([numbers, halves, halves]),
-    )
-
-
 def _halves(quads: Indices, points: Raw) -> Indices | None:
     """Return the two triangles of each quadrilateral, those that VTK's filter makes.
 
@@ -335,8 +299,8 @@ def _halves(quads: Indices, points: Raw) -> Indices | None:
     return corners.reshape(-1, 3)
 
 
-#: Numbers of corners.
-_TRIANGLE, _QUAD = 3, 4
+#: Number of corners.
+_QUAD = 4
 
 
 #: Number of each kind of cells of a vtkPolyData, and those cells.

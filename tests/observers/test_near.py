@@ -1,0 +1,150 @@
+"""What is near some triangles of a large surface has the light of the whole of it."""
+
+import tracemalloc
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight import Light, Scene, View
+from vizlight.draw.sources import with_sharp_edges
+from vizlight.observers import samples
+from vizlight.observers.near import near
+from vizlight.shading.options import LightOptions
+from vizlight.vtk.drawn import DrawnTriangles
+
+SCENE = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(1, 2, 2)))
+
+
+def slivers():
+    """Return an isosurface through nodes of its grid."""
+    grid = pv.ImageData(dimensions=(16, 16, 16), origin=(-7.5, -7.5, -7.5))
+    grid["r"] = np.linalg.norm(grid.points, axis=1)
+    level = grid["r"][np.ravel_multi_index((2, 5, 8), (16, 16, 16))]
+    surface = grid.contour([level], scalars="r")
+    surface.clear_data()
+    return surface
+
+
+def swirl(points):
+    return points[:, [1, 0, 2]] * (-1, 1, 0) + 1.0
+
+
+def flow():
+    plane = pv.Plane(i_resolution=12, j_resolution=12)
+    plane.points[:, 2] = 0.1 * np.sin(9 * plane.points[:, 0])
+    plane.clear_data()
+    plane.point_data["V"] = swirl(plane.points)
+    plane.cell_data["W"] = swirl(plane.cell_centers().points)
+    plane["u"], plane["v"] = plane["V"][:, 0], plane["V"][:, 1]
+    return plane
+
+
+def bare(mesh):
+    mesh.clear_data()
+    return mesh
+
+
+def grid():
+    x, y = np.meshgrid(np.linspace(0, 3, 20), np.linspace(0, 2, 16), indexing="ij")
+    return pv.StructuredGrid(x, y, 0.3 * np.sin(2 * x) * np.cos(3 * y))
+
+
+CASES = {
+    "slivers": (slivers, {}),
+    "edges": (lambda: bare(pv.Cylinder(resolution=24, capping=True)), {"feature_angle": "auto"}),
+    "normals": (pv.Sphere, {"feature_angle": "auto"}),
+    "given": (flow, {"normals": "V"}),
+    "vectors": (flow, {"tangents": "V"}),
+    "cells": (lambda: flow().cast_to_unstructured_grid(), {"tangents": "W"}),
+    "names": (flow, {"tangents": "u,v"}),
+    "rows": (flow, {"tangents": np.random.default_rng(0).normal(size=(169, 3))}),
+    "grid": (grid, {}),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_inputs_near_triangles_are_those_of_the_whole(name, monkeypatch):
+    make, how = CASES[name]
+    mesh, light = make(), LightOptions(**how)
+    chosen = np.random.default_rng(1).permutation(len(DrawnTriangles.of(mesh)))[:30]
+    # Without sharp edges the whole has its own points.
+    split = with_sharp_edges(mesh, light)
+    whole = samples.part_on(split, SCENE, light)
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    part = samples.part_on(mesh, SCENE, light)
+    assert part.inputs.normals is None
+    assert part.has_tangents == whole.has_tangents
+    found = part.near(chosen)
+    assert found.mesh.n_points < whole.mesh.n_points or name in ("edges", "slivers")
+    same = whole.cells[chosen]
+    np.testing.assert_array_equal(found.mesh.points[found.cells], split.points[same])
+    normals, expected = (
+        p.inputs.sides().normals[cells] for p, cells in ((found, found.cells), (whole, same))
+    )
+    turned = np.sign(np.einsum("ijk,ijk->i", normals, expected))[:, np.newaxis, np.newaxis]
+    # Of a triangle all normals are on one side; which is not known near it.
+    np.testing.assert_allclose(turned * normals, expected, atol=2e-6)
+    if part.has_tangents:
+        rows = found.inputs.tangents[:][found.cells]
+        np.testing.assert_allclose(rows, whole.inputs.tangents[:][same], atol=1e-6)
+        assert found.inputs.line_field == whole.inputs.line_field
+
+
+@pytest.mark.parametrize("flat", [False, True])
+def test_values_go_with_the_points_or_the_cells(flat, monkeypatch):
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    mesh = bare(pv.Box(level=3))
+    values = np.arange(mesh.n_cells if flat else mesh.n_points, dtype=float)
+    light = LightOptions(feature_angle="auto")
+    part = samples.part_on(mesh, SCENE, light, values=values, flat=flat)
+    chosen = np.array([7, 1, 100])
+    found = part.near(chosen)
+    if flat:
+        np.testing.assert_array_equal(found.values, chosen // 2)
+    else:
+        points = mesh.points[found.values.astype(int)]
+        np.testing.assert_array_equal(points, found.mesh.points)
+
+
+def test_wrong_arrays_are_refused_near_triangles_too(monkeypatch):
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    mesh = flow()
+    for how, words in (
+        ({"tangents": "X"}, "tangents: expected the name"),
+        ({"tangents": np.ones((3, 3))}, "tangents: expected 169 rows"),
+        ({"normals": "u"}, "normals: expected vectors"),
+    ):
+        part = samples.part_on(mesh, SCENE, LightOptions(**how), "block 2")
+        with pytest.raises(ValueError, match=words):
+            part.near(np.array([3]))
+
+
+def test_colors_without_light_need_no_normals(monkeypatch):
+    for whole in (1 << 17, 0):
+        monkeypatch.setattr(samples, "WHOLE", whole)
+        part = samples.part_on(pv.Sphere(), SCENE, LightOptions(), lit=False)
+        assert part.near(np.array([3, 5])).inputs.normals is None
+
+
+@pytest.mark.opengl
+def test_a_large_surface_is_read_like_a_small_one(monkeypatch):
+    mesh, scene = bare(pv.Box(level=20)), vizlight.presets.shape()
+    found = []
+    for whole in (1 << 17, 0):
+        monkeypatch.setattr(samples, "WHOLE", whole)
+        found.append(vizlight.legibility(mesh, scene, samples=128, size_mm=30))
+    assert found[0] == found[1]
+
+
+def test_memory_goes_by_the_triangles_and_not_by_the_surface():
+    plane = bare(pv.Plane(i_resolution=400, j_resolution=400))
+    surface = DrawnTriangles(plane)
+    near(plane, surface, np.array([3]), LightOptions())
+    tracemalloc.start()
+    near(plane, surface, np.arange(0, len(surface), 9000), LightOptions())
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    # A table of a megabyte, and blocks of 2^16 polygons.
+    assert most < 6e6

@@ -1,0 +1,81 @@
+"""Triangles as VTK draws them, some at a time, against VTK's own filters."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight.vtk import drawn
+from vizlight.vtk.drawn import DrawnTriangles
+
+
+def polygons():
+    """Return a surface of a vertex, a line, polygons of 3 to 6 corners and 2, and a strip."""
+    angles = [np.linspace(0, 2 * np.pi, n, endpoint=False) for n in (4, 3, 6, 4, 5, 3)]
+    rings = [np.column_stack([3 * i + np.cos(a), np.sin(a), 0 * a]) for i, a in enumerate(angles)]
+    ends = np.cumsum([0, *map(len, rings)])
+    faces = [[len(r), *range(a, a + len(r))] for a, r in zip(ends, rings, strict=False)]
+    faces.insert(2, [2, 0, 1])
+    strip = [4, 0, 1, 2, 3]
+    return pv.PolyData(
+        np.concatenate(rings), verts=[1, 0], lines=[2, 0, 5], faces=np.concatenate(faces),
+        strips=strip,
+    )  # fmt: skip
+
+
+def areas(points, triangles):
+    a, b, c = points[triangles].swapaxes(0, 1)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def test_polygons_of_any_corners_are_cut_as_vtk_cuts_them():
+    mesh = polygons()
+    found = DrawnTriangles(mesh)
+    corners, cells = found[:], found.cells(slice(None))
+    assert found.shape == corners.shape == (2 + 1 + 4 + 2 + 3 + 1 + 2, 3)
+    np.testing.assert_array_equal(cells, np.repeat([2, 3, 5, 6, 7, 8, 9], [2, 1, 4, 2, 3, 1, 2]))
+    of_cells = np.bincount(cells, areas(mesh.points, corners), mesh.n_cells)
+    sizes = mesh.compute_cell_sizes(length=False, volume=False)["Area"]
+    np.testing.assert_allclose(of_cells[2:9], sizes[2:9], rtol=1e-6)
+    rows = np.array([14, 0, 5, 5])
+    np.testing.assert_array_equal(found[rows], corners[rows])
+    np.testing.assert_array_equal(found[3:7], corners[3:7])
+    # Quadrilaterals are halved from their first corner, also where the other diagonal is shorter.
+    np.testing.assert_array_equal(corners[:2], [[0, 1, 2], [0, 2, 3]])
+
+
+@pytest.mark.parametrize("entries", [1 << 20, 7])
+def test_polygons_around_points_are_all_that_have_one(monkeypatch, entries):
+    monkeypatch.setattr(drawn, "TABLE", entries)
+    monkeypatch.setattr(drawn, "BLOCK", 50)
+    ball, points = pv.Sphere(), np.array([17, 400, 401])
+    for mesh in (ball, pv.Plane(), ball.merge(pv.Plane(i_resolution=20, j_resolution=20))):
+        surface = mesh.extract_surface(algorithm=None)
+        inside = points % surface.n_points
+        faces = surface.irregular_faces
+        expected = [i for i, face in enumerate(faces) if np.isin(face, inside).any()]
+        found = DrawnTriangles(surface).around(inside)
+        np.testing.assert_array_equal(found, expected)
+
+
+@pytest.mark.parametrize("size", [(4, 3, 1), (4, 1, 3), (1, 5, 3)])
+def test_grids_of_one_layer_have_the_quadrilaterals_of_their_surface(size):
+    image = pv.ImageData(dimensions=size)
+    for grid in (image, image.cast_to_structured_grid(), image.cast_to_rectilinear_grid()):
+        surface = grid.extract_surface(algorithm=None)
+        quads = surface["vtkOriginalPointIds"][surface.regular_faces]
+        found = DrawnTriangles.of(grid)
+        ids, ends = found.corners(np.arange(found.polygons))
+        np.testing.assert_array_equal(ids.reshape(-1, 4), quads)
+        np.testing.assert_array_equal(np.diff(ends), 4)
+        np.testing.assert_array_equal(found[3:5], [quads[1][[0, 2, 3]], quads[2][:3]])
+
+
+def test_plain_polygons_of_a_grid_are_a_surface_and_other_meshes_are_not():
+    plane = pv.Plane(i_resolution=3, j_resolution=2)
+    grid = plane.cast_to_unstructured_grid()
+    np.testing.assert_array_equal(DrawnTriangles.of(grid)[:], DrawnTriangles.of(plane)[:])
+    hidden = grid.copy()
+    hidden.cell_data["vtkGhostType"] = np.array([32, 0, 0, 0, 0, 0], np.uint8)
+    for mesh in (hidden, pv.ImageData(dimensions=(3, 3, 3)), pv.Line(), pv.PolyData(np.eye(3)),
+                 pv.UnstructuredGrid(), pv.ImageData(dimensions=(5, 1, 1))):  # fmt: skip
+        assert DrawnTriangles.of(mesh) is None

@@ -1,0 +1,131 @@
+"""The surroundings of some triangles of a large surface, as a mesh of their own."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import pyvista as pv
+
+from vizlight.draw.sources import with_sharp_edges
+from vizlight.mesh.blocks import cell_array
+from vizlight.observers.pixels import rows_of
+from vizlight.vtk.arrays import array_of, points_of
+from vizlight.vtk.cells import places, triangles
+from vizlight.vtk.corners import all_slivers, joined
+from vizlight.vtk.drawn import DrawnTriangles
+
+if TYPE_CHECKING:
+    from vizlight._types import Indices, Keywords
+    from vizlight.shading.options import LightOptions
+
+#: Name of a temporary point array, chosen not to clash with a user's array.
+PLACE = "vizlight place"
+
+
+class Near(NamedTuple):
+    """Surroundings of some triangles.
+
+    Attributes
+    ----------
+    mesh : pyvista.PolyData
+        All polygons that have a point in common with the triangles, with the arrays of their light.
+    light : LightOptions
+        How it is lit.
+    corners : ndarray of int, shape (M, 3)
+        Points of the triangles in it.
+    origin : ndarray of int
+        Point of the large mesh that each of its points is.
+    """
+
+    mesh: pv.PolyData
+    light: LightOptions
+    corners: Indices
+    origin: Indices
+
+
+def near(mesh: pv.DataSet, surface: DrawnTriangles, cells: Indices, light: LightOptions) -> Near:
+    """Return the surroundings of some triangles of a mesh, with the normals of the whole.
+
+    Normals are means over the faces around a point, and over points that slivers join. Which side
+    of a surface is outside is not known of a part of it. Whether its sharp edges are creases, which
+    ``feature_angle="auto"`` asks, is told by the edges of these surroundings.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh.
+    surface : DrawnTriangles
+        Its triangles.
+    cells : ndarray of int, shape (M,)
+        Numbers of the triangles.
+    light : LightOptions
+        How the mesh is lit, with the least angle of an edge that is sharp.
+    """
+    corners, polygon = surface[cells], surface.polygon(cells)
+    points = np.unique(corners)
+    while True:
+        around = surface.around(points)
+        ids, ends = surface.corners(around)
+        origin, ids = np.unique(ids, return_inverse=True)
+        part = pv.PolyData()
+        part.points = rows_of(points_of(mesh, None), origin)
+        part.SetPolys(cell_array(ids, ends))
+        first = joined(places(part), all_slivers(places(part), triangles(part)))
+        if first is None:
+            break
+        # The normal of a point is that of all points that are joined with it.
+        with_points = np.isin(first, first[np.searchsorted(origin, points)])
+        more = np.union1d(points, origin[with_points])
+        if len(more) == len(points):
+            break
+        points = more
+    own = _with_rows(part, mesh, light, origin, surface.cells_of(around))
+    at = np.searchsorted(origin, corners)
+    # Points of a grid are not split.
+    is_grid = not isinstance(mesh, pv.PolyData | pv.UnstructuredGrid)
+    split = part if is_grid else with_sharp_edges(part, own)
+    if not isinstance(split, pv.PolyData) or split is part:
+        return Near(part, own, at, origin)
+    place: Indices = np.asarray(split.point_data[PLACE])
+    at = _corners_of(split, place, np.searchsorted(around, polygon), at)
+    return Near(split, own, at, origin[place])
+
+
+def _with_rows(
+    part: pv.PolyData, mesh: pv.DataSet, light: LightOptions, origin: Indices, cells: Indices
+) -> LightOptions:
+    """Give a part of a mesh the rows of the arrays of its light; return the options for it."""
+    given: Keywords = {}
+    names = {light.positions or ""}
+    for name in ("tangents", "normals"):
+        value = getattr(light, name)
+        if isinstance(value, str):
+            names |= {value, *value.split(",")}
+        elif value is not None:
+            given[name] = array_of(mesh, name, value)[origin]
+    carried = mesh.point_data.active_normals_name if light.normals is None else None
+    for name in sorted(names | {carried or ""}):
+        if name in mesh.point_data:
+            part.point_data[name] = np.asarray(mesh.point_data[name])[origin]
+        elif name in mesh.cell_data:
+            part.cell_data[name] = np.asarray(mesh.cell_data[name])[cells]
+    if carried is not None:
+        part.GetPointData().SetActiveNormals(carried)
+    part.point_data[PLACE] = np.arange(len(origin))
+    return dataclasses.replace(light, **given)
+
+
+def _corners_of(
+    split: pv.PolyData, place: Indices, polygon: Indices, corners: Indices
+) -> Indices:  # fmt: skip
+    """Return the points of triangles after a split of points, given the polygons they are of."""
+    ids, ends = DrawnTriangles(split).corners(polygon)
+    row = np.repeat(np.arange(len(polygon)), np.diff(ends))
+    after = np.empty_like(corners)
+    for column, corner in zip(after.T, corners.T, strict=True):
+        # A polygon may name a point twice.
+        same = np.flatnonzero(place[ids] == corner[row])
+        column[:] = ids[same[np.unique(row[same], return_index=True)[1]]]
+    return after

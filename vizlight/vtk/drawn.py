@@ -1,0 +1,264 @@
+"""Triangles of a surface as VTK's renderer draws them, made for some of them and not stored."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from vtkmodules.vtkCommonDataModel import (
+    VTK_POLYGON,
+    VTK_QUAD,
+    VTK_TRIANGLE,
+    vtkCellArray,
+    vtkExplicitStructuredGrid,
+    vtkPolyData,
+    vtkUnstructuredGrid,
+)
+from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+
+from vizlight import _pool
+from vizlight.vtk.cells import (
+    GHOSTS,
+    as_numpy,
+    as_vtk,
+    bare_faces,
+    connectivity,
+    dimensions,
+    grid_cells,
+    has_faces,
+)
+
+if TYPE_CHECKING:
+    from vizlight._types import AnyArray, Bools, Dataset, Indices, Rows, Slice
+
+#: Numbers of corners.
+TRIANGLE, QUAD = 3, 4
+#: Number of polygons that are looked at at once.
+BLOCK = 1 << 16
+#: Number of entries of the table of marked points, beyond which some share an entry.
+TABLE = 1 << 20
+
+
+class DrawnTriangles:
+    """Triangles of a surface as VTK's renderer draws it, polygon by polygon.
+
+    It halves all quadrilaterals from their first corner to their third, and not by the shorter
+    diagonal.
+
+    Parameters
+    ----------
+    surface : vtkPolyData
+        Surface; its strips are split into triangles after all polygons.
+    """
+
+    def __init__(self, surface: vtkPolyData) -> None:
+        before = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
+        cells: Indices | int = before
+        if surface.GetNumberOfStrips():
+            surface, cells = _without_strips(surface)
+        kept = _are_faces(surface.GetPolys())
+        if not kept.all():
+            kept = np.broadcast_to(kept, surface.GetNumberOfPolys())
+            cells = (cells if isinstance(cells, np.ndarray) else cells + np.arange(len(kept)))[kept]
+            surface = bare_faces(surface, kept)
+        polys = surface.GetPolys()
+        size = max(polys.IsHomogeneous(), 0)
+        self._ids: Indices | _GridCorners = as_numpy(polys.GetConnectivityArray())
+        self._size, self._cells, self._points = size, cells, surface.GetPoints()
+        #: Number of polygons.
+        self.polygons = polys.GetNumberOfCells()
+        self._offsets = np.zeros(0, np.intp) if size else as_numpy(polys.GetOffsetsArray())
+
+    @classmethod
+    def of(cls, mesh: Dataset) -> DrawnTriangles | None:
+        """Return the triangles of a mesh whose faces stand in memory or in rows, else None.
+
+        It is a surface, a grid of plain polygons alone, or one of a single layer of points; what
+        has hidden cells is none of these.
+        """
+        if isinstance(mesh, vtkPolyData):
+            return cls(mesh) if has_faces(mesh) else None
+        if mesh.GetCellData().HasArray(GHOSTS) or mesh.GetPointData().HasArray(GHOSTS):
+            return None
+        sides = [count for count in dimensions(mesh) if count > 1]
+        if len(sides) == 2 and not isinstance(mesh, vtkExplicitStructuredGrid):
+            triangles = cls(vtkPolyData())
+            triangles._ids, triangles._size = _GridCorners(*sides), QUAD
+            triangles.polygons = mesh.GetNumberOfCells()
+            return triangles
+        if not isinstance(mesh, vtkUnstructuredGrid):
+            return None
+        kinds = {*as_numpy(mesh.GetDistinctCellTypesArray()).tolist()}
+        if not kinds or kinds - {VTK_TRIANGLE, VTK_QUAD, VTK_POLYGON}:
+            return None
+        surface = vtkPolyData()
+        surface.SetPoints(mesh.GetPoints())
+        surface.SetPolys(grid_cells(mesh))
+        return cls(surface)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Shape of an array of the corners."""
+        return len(self._ids) - 2 * self.polygons, TRIANGLE
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, rows: Rows, /) -> Indices:
+        """Return the points at the corners of some triangles, shape (M, 3)."""
+        if self._size == TRIANGLE:
+            triangles: Indices = np.reshape(self._ids[:], (-1, TRIANGLE))[rows]
+            return triangles
+        polygon, place = self._places(rows)
+        start, size = self._ends(polygon)
+        fan = [self._ids[start], self._ids[start + place + 1], self._ids[start + place + 2]]
+        corners = np.stack(fan, axis=1)
+        many = size > QUAD
+        if many.any():
+            corners[many] = self._cut(polygon[many], place[many])
+        return corners
+
+    def cells(self, rows: Rows) -> Indices:
+        """Return the cells of the surface that some triangles are of."""
+        return self.cells_of(self._places(rows)[0])
+
+    def cells_of(self, polygon: Indices) -> Indices:
+        """Return the cells of the surface that some polygons are."""
+        if isinstance(self._cells, np.ndarray):
+            return self._cells[polygon]
+        return polygon + self._cells
+
+    def polygon(self, rows: Rows) -> Indices:
+        """Return the polygons that some triangles are of."""
+        return self._places(rows)[0]
+
+    def corners(self, polygon: Indices) -> tuple[Indices, Indices]:
+        """Return the corners of some polygons, one after the other, and where each begins."""
+        start, size = self._ends(polygon)
+        ends = np.concatenate([[0], np.cumsum(size)])
+        return self._ids[np.repeat(start - ends[:-1], size) + np.arange(ends[-1])], ends
+
+    def around(self, points: Indices) -> Indices:
+        """Return the polygons that have a corner among some points."""
+        table = np.zeros(TABLE, dtype=np.bool_)
+        table[points % TABLE] = True
+        # A mask of all points would be as long as the mesh.
+        known = np.sort(points)
+        found = []
+        for block in _pool.blocks(self.polygons, BLOCK):
+            polygon = np.flatnonzero(self._any(table, block)) + block.start
+            ids, ends = self.corners(polygon)
+            at = np.minimum(np.searchsorted(known, ids), len(known) - 1)
+            found.append(polygon[np.logical_or.reduceat(known[at] == ids, ends[:-1])])
+        return np.concatenate(found)
+
+    def _any(self, table: Bools, block: Slice) -> Bools:
+        """Return which polygons of a block have a corner in a table of points."""
+        if self._size:
+            ids = self._ids[self._size * block.start : self._size * block.stop]
+            return np.asarray(table[ids % TABLE].reshape(-1, self._size).any(axis=1))
+        ends = self._offsets[block.start : block.stop + 1]
+        ids = self._ids[ends[0] : ends[-1]]
+        return np.asarray(np.logical_or.reduceat(table[ids % TABLE], ends[:-1] - ends[0]))
+
+    def _ends(self, polygon: Indices) -> tuple[Indices, Indices]:
+        """Return where the corners of polygons begin, and how many they are."""
+        if self._size:
+            return polygon * self._size, np.full(len(polygon), self._size)
+        start = self._offsets[polygon].astype(np.intp)
+        return start, self._offsets[polygon + 1] - start
+
+    def _places(self, rows: Rows) -> tuple[Indices, Indices]:
+        """Return the polygons of triangles, and which of the triangles of these they are."""
+        number = rows
+        if isinstance(rows, slice):
+            number = np.arange(*rows.indices(len(self)))
+        if self._size:
+            polygon, place = np.divmod(number, self._size - 2)
+            return polygon, place
+        # Polygons before one have two triangles each less than corners. Bisection takes no table.
+        low = np.zeros(len(number), dtype=np.intp)
+        high = np.full(len(number), self.polygons)
+        for _ in range(self.polygons.bit_length()):
+            middle = (low + high) // 2
+            before = self._offsets[middle] - 2 * middle <= number
+            low, high = np.where(before, middle, low), np.where(before, high, middle)
+        return low, number - (self._offsets[low] - 2 * low)
+
+    def _cut(self, polygon: Indices, place: Indices) -> Indices:
+        """Return some of the triangles into which VTK cuts polygons of many corners."""
+        names, which = np.unique(polygon, return_inverse=True)
+        ids, ends = self.corners(names)
+        cells, some = vtkCellArray(), vtkPolyData()
+        cells.SetData(as_vtk(ends), as_vtk(ids))
+        some.SetPoints(self._points)
+        some.SetPolys(cells)
+        some.GetCellData().AddArray(as_vtk(np.arange(len(names)), "number"))
+        split = vtkTriangleFilter()
+        split.SetInputData(some)
+        split.Update()
+        output = split.GetOutput()
+        triangles = connectivity(output.GetPolys())[0].reshape(-1, TRIANGLE)
+        count = np.bincount(as_numpy(output.GetCellData().GetArray("number")), minlength=len(names))
+        # What VTK cannot cut, it does not draw: a triangle of one point.
+        corners = np.repeat(ids[ends[:-1]][which, np.newaxis], TRIANGLE, axis=1)
+        there = place < count[which]
+        corners[there] = triangles[(np.cumsum(count) - count)[which[there]] + place[there]]
+        return corners
+
+
+class _GridCorners:
+    """Points at the corners of the quadrilaterals of a grid, as an array of them without memory."""
+
+    def __init__(self, width: int, height: int) -> None:
+        self._width, self._size = width, QUAD * (width - 1) * (height - 1)
+
+    def __len__(self) -> int:
+        return self._size
+
+    def __getitem__(self, index: Rows, /) -> Indices:
+        """Return the points at some corners; those of a quadrilateral stand around it."""
+        if isinstance(index, slice):
+            index = np.arange(*index.indices(self._size))
+        polygon, corner = np.divmod(index, QUAD)
+        row, column = np.divmod(polygon, self._width - 1)
+        points: Indices = column + (corner % 3 > 0) + self._width * (row + (corner > 1))
+        return points
+
+
+def _are_faces(polys: vtkCellArray) -> Bools:
+    """Return which polygons have three corners or more, or one value for all."""
+    if (size := polys.IsHomogeneous()) >= 0:
+        return np.array([size == 0 or size >= TRIANGLE])
+    offsets = as_numpy(polys.GetOffsetsArray())
+    blocks = _pool.blocks(polys.GetNumberOfCells(), BLOCK)
+    few = (np.diff(offsets[block.start : block.stop + 1]) < TRIANGLE for block in blocks)
+    if not any(each.any() for each in few):
+        return np.array([True])
+    return np.asarray(np.diff(offsets) >= TRIANGLE)
+
+
+def _without_strips(surface: vtkPolyData) -> tuple[vtkPolyData, Indices]:
+    """Return a surface with triangles in the place of strips, and the cell that each polygon is."""
+    before = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
+    polygons = surface.GetNumberOfPolys()
+    strips = vtkPolyData()
+    strips.SetPoints(surface.GetPoints())
+    strips.SetStrips(surface.GetStrips())
+    number = before + polygons + np.arange(surface.GetNumberOfStrips())
+    strips.GetCellData().AddArray(as_vtk(number, "number"))
+    split = vtkTriangleFilter()
+    split.SetInputData(strips)
+    split.Update()
+    output = split.GetOutput()
+    ids, offsets = connectivity(surface.GetPolys())
+    more, ends = connectivity(output.GetPolys())
+    cells = vtkCellArray()
+    cells.SetData(
+        as_vtk(np.concatenate([offsets, offsets[-1] + ends[1:]])), as_vtk(np.append(ids, more))
+    )
+    whole = bare_faces(surface)
+    whole.SetStrips(vtkCellArray())
+    whole.SetPolys(cells)
+    numbers: AnyArray = as_numpy(output.GetCellData().GetArray("number"))
+    return whole, np.append(before + np.arange(polygons), numbers)
