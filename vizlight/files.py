@@ -198,8 +198,8 @@ def read(
     Readers are libraries in C and C++; the command line reads in a process of its own. A file is
     refused where its reader gives an error or a warning, and where it is shorter than its format
     states: .stl, netCDF, HDF5, TIFF, VTK's XML and legacy text. Threads may read at the same time:
-    messages of VTK are told apart by thread, and no stream is redirected. Libraries other than VTK
-    may print.
+    each thread gets the messages of its own reader, and no stream is redirected. Libraries other
+    than VTK may print.
     """
     nodata = _check_selection(time, at, nodata)
     if cf_grids.is_grid(path):

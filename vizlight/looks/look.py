@@ -621,7 +621,10 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     if georeference.is_earth(mesh):
         step = Step("chart", "vizlight.cartography.in_degrees", step)
         notes.append("x and y are those of the whole earth in degrees, and taken for them")
-    step = look_options.cut(step, wishes)
+    of_light = (wishes.light.get(name) for name in ("normals", "occlusion", "positions"))
+    without = tuple(name for name in of_light if isinstance(name, str))
+    contents = Contents(step.run(), raster, without)
+    step, contents = look_options.cut(step, contents, wishes)
     notes += [step.note] if step.note else []
     if part.get("globe"):
         step = wishes.globe(step)
@@ -635,9 +638,9 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         notes.append(_of_stretched(step.run(), factor))
     if part.get("contour") is not None and wishes.question != "flow":
         step = wishes.isosurface(step)
-    of_light = (wishes.light.get(name) for name in ("normals", "occlusion", "positions"))
-    without = tuple(name for name in of_light if isinstance(name, str))
-    return step, Contents(step.run(), raster, without), notes
+    if contents.mesh is not step.run():
+        contents = replace(contents, mesh=step.run())
+    return step, contents, notes
 
 
 def _of_stretched(mesh: pv.DataSet, factor: float) -> str:

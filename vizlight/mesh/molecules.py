@@ -37,6 +37,9 @@ BACKBONE, LONG = "backbone_mask", 60
 _APART = {6: 4.5, 15: 9.0}
 #: Steps of curves through few and through many of them, in angstroms, and how many are many.
 _FINE, _COARSE, MANY = 0.6, 1.9, 5000
+#: Largest deviation in angstroms of the length of a bond from the sum of the radii of its atoms,
+#: and least share of such bonds where most atoms have none.
+OFF, USUAL = 0.25, 0.75
 #: Share of an edge of a cell up to which places are one.
 ROUNDED = 1e-3
 #: Names and elements of the atoms that stand for a residue of a protein and of a nucleic acid.
@@ -126,13 +129,11 @@ def of_cif(path: Path) -> pv.PolyData:
     """
     import gemmi
 
-    try:
+    with file_parts.errors_of_gemmi(path):
         document: Foreign = gemmi.cif.read(str(path))
         block = next((each for each in document if len(each.find_loop("_atom_site.id"))), None)
         structure = None if block is None else gemmi.make_structure_from_block(block)
         crystals = [gemmi.make_small_structure_from_block(each) for each in document]
-    except (RuntimeError, ValueError) as error:
-        raise ValueError(str(error).replace(f"{path}:", "line ").strip()) from None
     if structure is not None:
         return _macromolecule(structure, path)
     crystal = next((each for each in crystals if len(each.sites)), None)
@@ -328,12 +329,16 @@ def _joined(elements: Sequence[str], places: Sequence[Sequence[float]]) -> pv.Po
     lines = np.insert(pairs, 0, 2, axis=1).ravel()
     alone = np.setdiff1d(np.arange(len(places)), pairs)
     no_metal = np.isin(of_atoms, NO_METALS)
-    if np.count_nonzero(no_metal[alone]) > np.count_nonzero(no_metal) / 2:
+    points = np.asarray(places, dtype=np.float64)
+    covalent = {number: table.GetCovalentRadius(number) for number in numbers.values()}
+    sums = np.array([covalent[number] for number in of_atoms.tolist()])[pairs].sum(axis=1)
+    lengths = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
+    usual = np.count_nonzero(np.abs(lengths - sums) < OFF)
+    mostly_alone = np.count_nonzero(no_metal[alone]) > np.count_nonzero(no_metal) / 2
+    if mostly_alone and usual < USUAL * len(pairs):
         # Beads of a coarse model, or one atom of each residue, that meet by chance.
         alone, lines = np.arange(len(places)), lines[:0]
-    mesh = pv.PolyData(
-        np.array(places), lines=lines, verts=np.column_stack([np.ones_like(alone), alone])
-    )
+    mesh = pv.PolyData(points, lines=lines, verts=np.column_stack([np.ones_like(alone), alone]))
     mesh.point_data["atom_type"] = of_atoms
     radii = {name: table.GetVDWRadius(numbers[name]) for name in numbers}
     mesh.point_data["radius"] = [radii[name] for name in elements]
