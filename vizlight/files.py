@@ -571,7 +571,7 @@ def _damaged(path: Path, reason: str) -> FileError:
 #: Ways to files of other formats, by the ends of their names.
 _WAYS: dict[tuple[str, ...], str] = {
     (*_UNPACK, ".zip"): "unpack it first",
-    (".mol", ".mol2", ".sdf", ".gro", ".pqr", ".fchk", ".molden"):
+    (".pqr", ".fchk", ".molden"):
         "Open Babel makes a .pdb of it: obabel '{name}' -O '{stem}.pdb'",
     (".txt", ".xlsx", ".parquet", ".npy", ".npz"):
         "read its columns by NumPy or pandas, and look at a mesh of them: "
@@ -582,7 +582,7 @@ _WAYS: dict[tuple[str, ...], str] = {
     (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",
     (".step", ".stp", ".iges", ".igs", ".brep"):
         "gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{name}' -o '{stem}.stl'",
-    (".3mf", ".blend", ".dae", ".fbx", ".ifc", ".x3d"):
+    (".blend", ".fbx", ".ifc", ".x3d"):
         "Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'",
 }  # fmt: skip
 _USUAL_WAY = (
