@@ -24,6 +24,7 @@ from vizlight.mesh import (
     listed,
     meaning,
     projections,
+    radars,
     series,
     staggered,
     unrolled,
@@ -265,6 +266,8 @@ def of_dataset(
     """
     if not hasattr(data, "data_vars"):
         data = data.to_dataset(name=data.name or "values")
+    if radars.is_radar(data):
+        return radars.grid(_with_numbers(data), at or {}, nodata, source)
     return _Reader(data).grid(time, dict(at or {}), nodata, source)
 
 
