@@ -49,7 +49,7 @@ from vizlight.mesh.derived import (
     with_vectors,
 )
 from vizlight.mesh.fills import without_fills
-from vizlight.mesh.molecules import backbone
+from vizlight.mesh.molecules import atoms_in, backbone
 from vizlight.mesh.subdivision import simplices
 from vizlight.vtk import messages
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
@@ -67,8 +67,8 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "FileError", "backbone", "creases", "layer_of", "layers", "read", "read_parts", "stretched",
-    "surface_of", "warped", "with_vectors", "without_fills", "write_mesh",
+    "FileError", "atoms_in", "backbone", "creases", "layer_of", "layers", "read", "read_parts",
+    "stretched", "surface_of", "warped", "with_vectors", "without_fills", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.

@@ -31,6 +31,8 @@ _PLACE = re.compile(r"\s*[+-]?\d+\.?\d*\s*")
 _SYMBOL = re.compile(r"[A-Za-z]{1,3}\d*$")
 #: Point arrays of a PDB file: their columns, and what stands for none.
 _NUMBERS = {"residue": (22, 26, 0), "occupancy": (54, 60, 1.0), "b_factor": (60, 66, 0.0)}
+#: Field arrays of a volume with the atomic numbers and the places of the molecule in it.
+NUMBERS, PLACES = "atom_numbers", "atom_places"
 #: Name of their marks, and number of them from which a molecule is a long chain.
 BACKBONE, LONG = "backbone_mask", 60
 #: Largest distance in angstroms of two that follow each other, in proteins and in nucleic acids.
@@ -242,6 +244,37 @@ def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
     smooth: pv.PolyData = pv.wrap(curves.GetOutput())
     smooth.GetFieldData().ShallowCopy(atoms.GetFieldData())
     return smooth
+
+
+def atoms_in(volume: pv.DataSet, /) -> pv.PolyData:
+    """Return the molecule in a volume of a cube file.
+
+    Parameters
+    ----------
+    volume : pyvista.DataSet
+        Volume as :func:`vizlight.read` reads it, with atoms as field arrays.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Bonds and atoms as of :func:`of_xyz`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no such volume.
+    """
+    from vtkmodules.vtkDomainsChemistry import vtkPeriodicTable
+
+    if not isinstance(volume, pv.DataSet):
+        raise TypeError(_check.message("volume", "a pyvista.DataSet", _check.describe(volume)))
+    if not {NUMBERS, PLACES} <= {*volume.field_data.keys()}:
+        expected = f"the volume of a cube file, with field arrays {NUMBERS!r} and {PLACES!r}"
+        raise ValueError(_check.message("volume", expected, f"{volume.field_data.keys()}"))
+    table = vtkPeriodicTable()
+    numbers = np.ravel(volume.field_data[NUMBERS]).tolist()
+    places = np.reshape(volume.field_data[PLACES], (-1, 3))
+    return joined([table.GetSymbol(int(number)) for number in numbers], places)
 
 
 def _element(line: str) -> str:

@@ -12,7 +12,7 @@ from vizlight.draw.margins import parted
 from vizlight.looks import levels
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import eye_around
-from vizlight.looks.recipes import fields, surfaces
+from vizlight.looks.recipes import fields, lines, surfaces
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
     Doubt,
@@ -21,7 +21,7 @@ from vizlight.looks.recipes.drawing import (
     range_of,
 )
 from vizlight.looks.steps import Step
-from vizlight.mesh import density_maps, meaning
+from vizlight.mesh import density_maps, meaning, molecules
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
@@ -51,6 +51,10 @@ SIGMAS = 2.0
 SMOOTHED = "the values are smoothed by one voxel"
 #: Share of its range through which a second array runs on an isosurface that shows it.
 LEAST_SPREAD = 0.02
+#: Drawing of an isosurface around a molecule, whose far side would hide it too, and normals that
+#: point out of it.
+CLEAR = {"opacity": 0.5, "culling": "back"}
+OUTWARD = {"auto_orient_normals": True, "split_vertices": False, "cell_normals": False}
 #: Most pieces of an isosurface, where none has this share of it.
 MOST_PIECES, LARGE = 50, 0.3
 #: Radians in a pixel from which the normals of an isosurface may turn too fast, and how they are
@@ -85,6 +89,9 @@ def isosurface(case: Case) -> Drawing:
     part = dict(case.wishes.part) | {"contour": array.name, "level": level.at}
     whole = replace(case, wishes=replace(case.wishes, part=part))
     mesh = whole.wishes.isosurface(level.volume)
+    has_molecule = molecules.PLACES in case.data.run().field_data
+    if has_molecule:
+        mesh = Step("outward", ".compute_normals", mesh, **OUTWARD)
     if not level.is_sure and _is_crumbs(mesh.run()):
         return slices(case, "; isosurfaces are crumbs")
     surface, box = _framed(whole, mesh, boxed=level.boxed)
@@ -99,6 +106,8 @@ def isosurface(case: Case) -> Drawing:
     else:
         figure, words = "shape", levels.number(level.at)
         drawing = surfaces.surface(replace(surface, question="shape"))
+    if has_molecule:
+        drawing = _around_molecule(case, drawing)
     if not level.is_sure and _is_rough(surface, mesh, drawing.camera):
         drawing = replace(drawing, doubt=Doubt((figure,), lambda: slices(case)))
     return replace(
@@ -168,6 +177,19 @@ def _of_both_signs(surface: Case, array: Named, ends: tuple[float, float], words
     title = f"{title} = {words} {unit}".rstrip()
     key = drawing.keys[0] | {"title": title, "levels": [ends[0], 0.0, ends[1]]}
     return replace(drawing, keys=[key])
+
+
+def _around_molecule(case: Case, drawing: Drawing) -> Drawing:
+    """Return the drawing of an isosurface that lets the molecule in its volume be seen."""
+    atoms = Step("atoms", "files.atoms_in", case.data)
+    contents = Contents(atoms.run())
+    wishes = replace(case.wishes, frame=drawing.camera, picture={}, light={}, make_scene=None)
+    array = contents.named("atom_type")
+    inside = lines.molecule(
+        replace(case, data=atoms, contents=contents, array=array, wishes=wishes)
+    )
+    layers = [replace(each, keywords=each.keywords | CLEAR) for each in drawing.layers]
+    return replace(drawing, layers=[*layers, *inside.layers], keys=[*drawing.keys, *inside.keys])
 
 
 def _framed(case: Case, mesh: Step, *, boxed: bool) -> tuple[Case, Step | None]:
