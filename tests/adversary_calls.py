@@ -140,6 +140,13 @@ def black():
     return np.zeros((20, 20, 3), np.uint8)
 
 
+def orbital():
+    """Return a volume of two values with an atom in it."""
+    volume = pv.ImageData(dimensions=(2, 1, 1))
+    volume.field_data["atom_numbers"], volume.field_data["atom_places"] = [6], [[0.0, 0.0, 0.0]]
+    return volume
+
+
 def chain():
     """Return a molecule of eight residues."""
     mesh = pv.PolyData(np.outer(np.arange(8), (3.8, 0, 0)))
@@ -251,6 +258,7 @@ OWN = {
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "creases.creases": {"surface": ball},
     "molecules.backbone": {"atoms": chain},
+    "molecules.atoms_in": {"volume": orbital},
     "both_sides.both_sides": {"surface": ball, "names": ("a", "b")},
     "box_axes.box_axes": {"size": 10.0},
     "box_axes.captions": {"meshes": lambda: pv.MultiBlock({"a": ball()}), "size": 10.0},

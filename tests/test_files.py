@@ -50,10 +50,10 @@ def test_names_of_arrays_are_one_line(tmp_path):
         ("g.ex2", b"x", ""),
         ("h.vtp", b"", ""),
         ("i.dwg", b"x", "no reader takes '.dwg' files; convert it to"),
-        ("i.mol2", b"x", "obabel 'i.mol2' -O 'i.pdb'"),
+        ("i.molden", b"x", "obabel 'i.molden' -O 'i.pdb'"),
         ("i.txt", b"x,y,z", r"mesh = pyvista.PolyData\(rows of x, y, z\)"),
         ("j.stp", b"x", "gmsh -2 -clcurv 20 'j.stp' -o 'j.stl'"),
-        ("j.dae", b"x", "assimp export 'j.dae' 'j.glb'"),
+        ("j.fbx", b"x", "assimp export 'j.fbx' 'j.glb'"),
         ("k.gz", b"x", "no reader takes '.gz' files; unpack it first"),
         # Headers that break off within a line.
         ("l.ply", PLY % b"property" + bytes(100), "its header has the line"),

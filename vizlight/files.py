@@ -49,7 +49,7 @@ from vizlight.mesh.derived import (
     with_vectors,
 )
 from vizlight.mesh.fills import without_fills
-from vizlight.mesh.molecules import backbone
+from vizlight.mesh.molecules import atoms_in, backbone
 from vizlight.mesh.subdivision import simplices
 from vizlight.vtk import messages
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
@@ -67,8 +67,8 @@ if TYPE_CHECKING:
     from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
-    "FileError", "backbone", "creases", "layer_of", "layers", "read", "read_parts", "stretched",
-    "surface_of", "warped", "with_vectors", "without_fills", "write_mesh",
+    "FileError", "atoms_in", "backbone", "creases", "layer_of", "layers", "read", "read_parts",
+    "stretched", "surface_of", "warped", "with_vectors", "without_fills", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.
@@ -198,8 +198,8 @@ def read(
     Readers are libraries in C and C++; the command line reads in a process of its own. A file is
     refused where its reader gives an error or a warning, and where it is shorter than its format
     states: .stl, netCDF, HDF5, TIFF, VTK's XML and legacy text. Threads may read at the same time:
-    messages of VTK are told apart by thread, and no stream is redirected. Libraries other than VTK
-    may print.
+    each thread gets the messages of its own reader, and no stream is redirected. Libraries other
+    than VTK may print.
     """
     nodata = _check_selection(time, at, nodata)
     if cf_grids.is_grid(path):
@@ -571,7 +571,7 @@ def _damaged(path: Path, reason: str) -> FileError:
 #: Ways to files of other formats, by the ends of their names.
 _WAYS: dict[tuple[str, ...], str] = {
     (*_UNPACK, ".zip"): "unpack it first",
-    (".mol", ".mol2", ".sdf", ".gro", ".pqr", ".fchk", ".molden"):
+    (".pqr", ".fchk", ".molden"):
         "Open Babel makes a .pdb of it: obabel '{name}' -O '{stem}.pdb'",
     (".txt", ".xlsx", ".parquet", ".npy", ".npz"):
         "read its columns by NumPy or pandas, and look at a mesh of them: "
@@ -582,7 +582,7 @@ _WAYS: dict[tuple[str, ...], str] = {
     (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",
     (".step", ".stp", ".iges", ".igs", ".brep"):
         "gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{name}' -o '{stem}.stl'",
-    (".3mf", ".blend", ".dae", ".fbx", ".ifc", ".x3d"):
+    (".blend", ".fbx", ".ifc", ".x3d"):
         "Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'",
 }  # fmt: skip
 _USUAL_WAY = (

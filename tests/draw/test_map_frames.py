@@ -207,7 +207,7 @@ def framed(section, bounds, size, monkeypatch):
     """Return the words of the frame of a section, and the frame."""
     mesh, words = sheet(bounds[1] - bounds[0], bounds[3] - bounds[2], unit=""), []
     mesh.origin = (bounds[0], bounds[2], 0.0)
-    meaning.attach(mesh, meaning.Meaning(section=section))
+    meaning.attach(mesh, meaning.Meaning(scales=section))
     triangles = letters.triangles
     monkeypatch.setattr(letters, "width", lambda word: np.ptp(triangles(word)[0][:, 0]))
     monkeypatch.setattr(letters, "triangles", lambda word: words.append(word) or triangles(word))
@@ -225,6 +225,13 @@ def test_a_section_has_numbers_on_two_sides_and_what_they_are(monkeypatch):
     assert west < -60 - 6 * (letters.width("5000") + 0.73)
     assert south < -100 - 6
     assert (east, north) == pytest.approx((60, 0), abs=12)
+
+
+def test_long_lengths_are_in_kilometres(monkeypatch):
+    scales = [meaning.AxisScale("distance", "m", 1.0), meaning.AxisScale("height", "m", 0.1)]
+    words, _ = framed(scales, (0, 6000, 0, 3000), 200.0, monkeypatch)
+    assert words[:4] == ["0", "1000", "2000", "3000"]
+    assert words[-3:] == ["30", "distance (m)", "height (km)"]
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ def test_a_section_lies_as_it_is_and_has_isolines_and_numbers():
     mesh = chart(30, 900, unit="")
     scales = [meaning.AxisScale("distance", "km", 1e3), meaning.AxisScale("pressure", "hPa", -1.0)]
     mesh.origin = (0.0, -1000.0, 0.0)
-    meaning.attach(mesh, meaning.Meaning(section=scales))
+    meaning.attach(mesh, meaning.Meaning(scales=scales))
     look = vizlight.look(mesh, size=SIZE)
     assert paths(look)[1:] == [*ISOLINES, "frame"]
     x, y, _ = look.mesh.bounds_size

@@ -156,6 +156,14 @@ def test_both_signs_of_an_orbital_are_shown():
     assert f"isosurface psi = ±{level:.4g}" in look.summary
     assert key["title"] == f"Psi = ±{level:.4g}"
     np.testing.assert_allclose(np.unique(look.mesh["psi"]), [-level, level], rtol=1e-6)
+    # The molecule of a cube file is seen through lobes whose faces point outward.
+    grid.field_data["atom_numbers"], grid.field_data["atom_places"] = [8, 1], [[0, 0, 0], [1, 0, 0]]
+    lobes, atoms, *_ = vizlight.look(grid).drawing.layers
+    assert (lobes.keywords["opacity"], lobes.keywords["culling"]) == (0.5, "back")
+    normals, points = lobes.mesh.run()["Normals"], np.asarray(lobes.mesh.run().points)
+    sides = np.where(points[:, :1] > 0, 1, -1) * [4, 0, 0]
+    assert np.all(np.sum(normals * (points - sides), axis=1) > 0)
+    np.testing.assert_allclose(atoms.mesh.run().center, (0.5, 0, 0), atol=0.5)
     grid["psi"] = np.abs(grid["psi"])
     assert "±" not in vizlight.look(grid).summary
 

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+import pyvista as pv
 
 import vizlight
+from vizlight import files
 from vizlight.files import FileError
 from vizlight.mesh import meaning
 from vizlight.mesh.cubes import BOHR
@@ -23,7 +25,7 @@ def written(folder, counts=(2, 3, 4), atoms=1, values=VALUES, orbitals=""):
         "OUTER LOOP: X, MIDDLE LOOP: Y, INNER LOOP: Z",
         f"{atoms} 1.0 2.0 3.0",
         *axes,
-        "8 8.0 0.0 0.0 0.0",
+        "8 8.0 0.5 1.5 4.0",
         orbitals,
         values,
     ]
@@ -45,9 +47,19 @@ def test_values_are_at_their_places_in_angstroms(tmp_path):
 def test_orbitals_are_arrays_of_their_numbers(tmp_path):
     values = " ".join(map(str, range(48)))
     mesh = vizlight.read(written(tmp_path, atoms=-1, values=values, orbitals="2 5 6"))
-    assert meaning.line(mesh) == "x in angstroms, y, z, 1 atoms are left out"
+    assert meaning.line(mesh) == "x in angstroms, y, z"
     assert mesh["orbital 5"].max() == 46
     np.testing.assert_array_equal(mesh["orbital 6"], mesh["orbital 5"] + 1)
+
+
+def test_atoms_are_in_the_space_of_the_values(tmp_path):
+    atoms = files.atoms_in(vizlight.read(written(tmp_path)))
+    assert atoms["atom_type"].tolist() == [8]
+    np.testing.assert_allclose(atoms.points, [[0.5 * BOHR, 1.5 * BOHR, 4.0 * BOHR]], rtol=1e-6)
+    with pytest.raises(ValueError, match="volume: expected the volume of a cube file"):
+        files.atoms_in(pv.ImageData(dimensions=(2, 2, 2)))
+    with pytest.raises(TypeError, match="volume: expected a pyvista.DataSet"):
+        files.atoms_in("psi.cube")
 
 
 def test_a_cube_that_is_cut_short_is_refused(tmp_path):

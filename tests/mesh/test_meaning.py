@@ -194,3 +194,21 @@ def test_a_word_of_a_reader_is_no_title(name, title):
     several = mesh_with(name, "values")
     meaning.name_by_file(several, Path("heart.vtk"))
     assert "long_name" not in meaning.of(several).arrays.get(name, {})
+
+
+@pytest.mark.parametrize(
+    ("scale", "coordinate", "words", "of_sea"),
+    [
+        (meaning.AxisScale("pressure", "hPa", -1.0), -500.0, "500 hPa", False),
+        (meaning.AxisScale("pressure", "dbar", -100.0), -5e4, "500 dbar", True),
+        (meaning.AxisScale("depth", "m", -1.0), -12345.0, "12345 m", True),
+        (meaning.AxisScale("s_rho"), -0.5, "", True),
+        (meaning.AxisScale("level", "", -1.0), -3.0, "", False),
+        (meaning.AxisScale("potential temperature", "K"), 315.0, "315 K", False),
+    ],
+)
+def test_a_scale_has_the_number_of_a_layer_and_says_whether_it_is_one_of_a_sea(
+    scale, coordinate, words, of_sea
+):
+    assert scale.at(coordinate) == words
+    assert scale.is_of_sea(coordinate) == of_sea

@@ -185,3 +185,15 @@ def test_cations_of_a_crystal_are_not_joined_and_metals_are(tmp_path):
     copper = vizlight.read(atoms("Cu", "Cu", 2.0))
     assert copper.n_lines >= 12
     assert vizlight.look(copper).shown == "molecule"
+
+
+def test_bonds_are_those_of_atoms_not_of_beads_that_meet(tmp_path):
+    """A peptide in water has bonds of the usual lengths, beads at any distance."""
+    alone = [f"O {5 * i} 9 9" for i in range(8)]
+    peptide = ["C 0 0 0", "N 1.33 0 0", "C 2 1.25 0", "O -0.6 1.05 0"]
+    text = "\n".join(["12", "", *peptide, *alone, ""])
+    assert vizlight.read(written(tmp_path, text, "wet.xyz")).n_lines == 3
+    beads = ["C 0 0 0", "C 1.9 0 0", "C 0 3 0", "C 0 3.9 0"]
+    text = "\n".join(["12", "", *beads, *alone, ""])
+    mesh = vizlight.read(written(tmp_path, text, "beads.xyz"))
+    assert (mesh.n_lines, mesh.n_verts) == (0, 12)

@@ -1,4 +1,4 @@
-"""Messages of VTK are told apart by thread."""
+"""Each thread gets its own messages of VTK."""
 
 from concurrent.futures import ThreadPoolExecutor
 

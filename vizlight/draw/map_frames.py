@@ -48,6 +48,8 @@ FINE, SMALL = 721, 0.75
 BAR, THICK = 0.25, 0.2
 #: Letters for degrees above and below 0, by the titles of scales.
 SIGNS = {"longitude": "EW", "latitude": "NS"}
+#: Length in metres from which on the numbers along a side are in kilometres.
+FAR = 12e3
 #: Turn of words along a height, which are read from the right.
 READ_FROM_RIGHT = np.array([[0.0, 1.0], [-1.0, 0.0]])
 
@@ -243,7 +245,7 @@ def _sides(box: Array, size: float, *words: Sequence[tuple[float, str]]) -> list
 def _scales(box: Array, size: float, section: Sequence[meaning.AxisScale]) -> list[Part]:
     """Return the frame of a section: round numbers along two sides, and what they are."""
     left, right, bottom, top = box
-    flat, up = section
+    flat, up = _in_kilometres(section[0], right - left), _in_kilometres(section[1], top - bottom)
     below = _numbers(left, right, size, flat, is_up=False)
     beside = _numbers(bottom, top, size, up, is_up=True)
     widest = max((letters.width(word) for _, word in beside), default=0.0)
@@ -260,6 +262,12 @@ def _scales(box: Array, size: float, section: Sequence[meaning.AxisScale]) -> li
             points, ids = _word(title, 0.0, 0.0, small, align=0.5)
             parts.append((points @ turn + place, ids))
     return parts
+
+
+def _in_kilometres(scale: meaning.AxisScale, long: float) -> meaning.AxisScale:
+    """Return a scale in kilometres where it is in metres and a side is so long."""
+    is_far = scale.unit == "m" and long >= FAR * abs(scale.factor)
+    return scale._replace(unit="km", factor=1e3 * scale.factor) if is_far else scale
 
 
 def _title(scale: meaning.AxisScale) -> str:

@@ -11,6 +11,7 @@ import vizlight
 from vizlight import _check, files
 from vizlight.draw import movie
 from vizlight.looks import options as look_options
+from vizlight.looks.contents import Contents
 from vizlight.looks.options import READ
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.recipes import fields
@@ -331,7 +332,7 @@ def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str)
     for time in times:
         step = Step("", read.path, *read.arguments, **read.keywords | {"time": time})
         # Of a volume that is shown as a map, one layer is seen.
-        mesh = look_options.layer(step, look.wishes).run()
+        mesh = look_options.layer(step, Contents(step.run()), look.wishes)[0].run()
         if "," in array:
             mesh = files.with_vectors(mesh, array)
         if array not in mesh.array_names:

@@ -545,13 +545,19 @@ def _unread(look: Look, names: Sequence[str]) -> str:
     return ""
 
 
+def _is_of_grid(data: object) -> bool:
+    """Return whether data have a reader that says which values of an array are missing."""
+    if isinstance(data, str | Path):
+        return Path(data).suffix.lower() in (*cf_grids.SUFFIXES, *georeference.SUFFIXES)
+    return cf_grids.is_grid(data)
+
+
 def _have_components(data: Sequence[object], wishes: Wishes) -> bool:
     """Return whether files have each a component of one vector, such as that of a wind."""
     paths = [item for item in data if isinstance(item, str | Path)]
-    grids = (*cf_grids.SUFFIXES, *georeference.SUFFIXES)
     if len(data) < 2 or len(paths) < len(data) or "overlay" in wishes.part:
         return False
-    if not all(Path(path).suffix.lower() in grids for path in paths):
+    if not all(map(_is_of_grid, paths)):
         return False
     keywords = {name: wishes.part[name] for name in look_options.READ if name in wishes.part}
     with warnings.catch_warnings():
@@ -568,8 +574,7 @@ def _have_components(data: Sequence[object], wishes: Wishes) -> bool:
 def read_steps(data: object, wishes: Wishes) -> list[Step]:
     """Return the steps that read data: one for each dimension of the cells of a file of blocks."""
     keywords = {name: wishes.part[name] for name in look_options.READ if name in wishes.part}
-    grids = (*cf_grids.SUFFIXES, *georeference.SUFFIXES)
-    if not cf_grids.is_grid(data) and not str(data).lower().endswith(grids):
+    if not _is_of_grid(data):
         # Of other data they are left out afterwards.
         keywords.pop("nodata", None)
     if cf_grids.is_grid(data):
@@ -609,9 +614,10 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         raster = Path(data).suffix.lower() in (*georeference.SUFFIXES, ".dem")
         if part.get("time") is None and (note := series.note(step.run())):
             notes.append(note)
-    nodata = [] if part.get("nodata") is None else [part["nodata"]]
-    known = Step("known", "files.without_fills", step, *nodata)
-    step = step if known.run() is step.run() else known
+    if not _is_of_grid(data):
+        nodata = [] if part.get("nodata") is None else [part["nodata"]]
+        known = Step("known", "files.without_fills", step, *nodata)
+        step = step if known.run() is step.run() else known
     mesh = step.run()
     notes += [text] if (text := meaning.line(mesh)) else []
     if not mesh.n_points:
@@ -627,7 +633,10 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     if georeference.is_earth(mesh):
         step = Step("chart", "vizlight.cartography.in_degrees", step)
         notes.append("x and y are those of the whole earth in degrees, and taken for them")
-    step = look_options.cut(step, wishes)
+    of_light = (wishes.light.get(name) for name in ("normals", "occlusion", "positions"))
+    without = tuple(name for name in of_light if isinstance(name, str))
+    contents = Contents(step.run(), raster, without)
+    step, contents = look_options.cut(step, contents, wishes)
     notes += [step.note] if step.note else []
     if part.get("globe"):
         step = wishes.globe(step)
@@ -641,9 +650,8 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         notes.append(_of_stretched(step.run(), factor))
     if part.get("contour") is not None and wishes.question != "flow":
         step = wishes.isosurface(step)
-    of_light = (wishes.light.get(name) for name in ("normals", "occlusion", "positions"))
-    without = tuple(name for name in of_light if isinstance(name, str))
-    contents = Contents(step.run(), raster, without)
+    if contents.mesh is not step.run():
+        contents = replace(contents, mesh=step.run())
     notes += [words] if (words := contents.words_on_none()) else []
     return step, contents, notes
 

@@ -166,58 +166,54 @@ def scene_maker(scene: object) -> SceneMaker | None:
     return lambda *_: scene_step(scene)  # type: ignore[arg-type]
 
 
-def cut(mesh: Step, wishes: Wishes) -> Step:
-    """Return the steps that raise, clip and choose cells of a mesh, after it was read."""
+def cut(mesh: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Contents]:
+    """Return the steps that raise, clip and choose cells of a mesh after it was read, and contents.
+
+    The contents are those of the mesh and of its layer; the next steps are not looked at.
+    """
     part = wishes.part
     if part.get("warp") is not None and not part.get("globe"):
         factor, note = wishes.heightened(mesh.run(), part["warp"])
         mesh = Step("raised", "files.warped", mesh, part["warp"], factor)
         mesh.note = note
-    mesh = layer(mesh, wishes)
+    mesh, contents = layer(mesh, contents, wishes)
     for name, low, high in part.get("threshold") or ():
         mesh = _kept(mesh, name, low, high)
     for normal, origin in part.get("clip") or ():
         mesh = Step("clipped", ".clip", mesh, normal=normal, origin=origin)
         mesh.asked = ("clip", f"{normal}, {origin}")
-    return mesh
+    return mesh, contents
 
 
-def layer(mesh: Step, wishes: Wishes) -> Step:
-    """Return the step that takes the lowest layer of a volume over a map, the highest of a sea.
+def layer(mesh: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Contents]:
+    """Return the step that takes one layer of a volume that is seen from above, and its contents.
 
-    Of other volumes that are thin enough for a map it is the highest, which is seen from above. A
-    volume is left as it is where a question or a part of it was asked for.
+    Over a map it is the lowest layer, of a sea the highest, as of any volume that is thin enough to
+    be drawn as a map. A volume is left as it is where a question or a part of it was asked for.
     """
     grid, part = mesh.run(), wishes.part
     of_volume = ("contour", "slice", "clip", "threshold")
-    is_chosen = wishes.question != "auto" or any(part.get(name) for name in of_volume)
-    if is_chosen:
-        return mesh
-    is_map = georeference.is_map(grid)
-    if not is_map and not _is_slab(Contents(grid)):
-        return mesh
-    count = files.layers(grid)
-    words = meaning.of(grid).axes
-    is_sea = meaning.is_of_sea(" ".join(words[2:]), grid.bounds[5])
-    from_top = is_sea or not is_map
+    if wishes.question != "auto" or any(part.get(name) for name in of_volume):
+        return mesh, contents
+    is_map, is_thin = georeference.is_map(grid), contents.dimension == 3 and contents.flat_axis == 2
+    count = files.layers(grid) if is_map or is_thin else 0
+    if not is_map and count <= 2:
+        return mesh, contents
+    scales, top = meaning.of(grid).scales[2:], grid.bounds[5]
+    from_top = not is_map or (scales[0].is_of_sea(top) if scales else top <= 0)
     order = range(count - 1, -1, -1) if from_top else range(count)
     for at in order:
         taken = Step("layer", "files.layer_of", mesh, at)
+        contents = replace(contents, mesh=taken.run())
         # The wind across the ground is 0: a layer without data shows nothing.
-        if Contents(taken.run()).arrays:
+        if contents.arrays:
             break
     else:
-        return mesh
+        return mesh, replace(contents, mesh=grid)
     height = abs(float(np.nanmean(taken.run().points[:, 2])))
     which = ("highest" if from_top else "lowest") + " with data" * (at != order[0])
     taken.note = f"the {which} of {count} layers is shown, at {height:g} along z"
-    return taken
-
-
-def _is_slab(contents: Contents) -> bool:
-    """Return whether a volume of several layers is so thin that it is drawn as a map."""
-    is_flat = contents.dimension == 3 and contents.flat_axis == 2
-    return is_flat and files.layers(contents.mesh) > 2
+    return taken, contents
 
 
 #: Parts of a map, and questions, for which it stays in degrees.

@@ -24,6 +24,7 @@ from vizlight.mesh import (
     listed,
     meaning,
     projections,
+    radars,
     series,
     staggered,
     unrolled,
@@ -62,8 +63,6 @@ _UNITS = {
 }
 #: Units in which times along an axis are read, and their lengths in seconds.
 _CLOCK = (("days", 86_400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0))
-#: Length in metres from which on an axis of a section is in kilometres.
-_FAR = 12e3
 #: Units of the angles of a scan.
 _ANGLES = r"(micro|µ|u)?rad(ian)?s?"
 #: Names of longitude and of latitude.
@@ -151,12 +150,15 @@ class _Axis:
         Words for the meaning.
     kind : {"degrees", "rotated", "length", "angle", "time", "index", ""}
         Kind of its unit; an angle is one of a scan, which is no place.
+    scale : AxisScale
+        Numbers along it, in the unit in which they are read.
     """
 
     ticks: Array
     order: Indices
     words: str
-    kind: str = ""
+    kind: str
+    scale: meaning.AxisScale
 
 
 def is_grid(value: object) -> bool:
@@ -268,6 +270,8 @@ def of_dataset(
     """
     if not hasattr(data, "data_vars"):
         data = data.to_dataset(name=data.name or "values")
+    if radars.is_radar(data):
+        return radars.grid(_with_numbers(data), at or {}, nodata, source)
     return _Reader(data).grid(time, dict(at or {}), nodata, source)
 
 
@@ -489,6 +493,8 @@ class _Reader:
         self.said.axes = [
             f"{letter} {axis.words}" for letter, axis in zip("xyz", axes, strict=False)
         ]
+        if len(dims) > 2 or named.keys() != {"x", "y"}:
+            self.said.scales = [axis.scale for axis in axes]
         if {"x", "y"} <= named.keys():
             self._set_unit(grid, axes, mapped=mapped)
             kind = axes[0].kind
@@ -496,8 +502,6 @@ class _Reader:
             text = self._projection(kind) if mapped or kind == "length" else ""
             if text and kind == axes[1].kind:
                 grid.field_data[georeference.PROJECTION if mapped else "crs"] = [text]
-        elif len(dims) == 2:
-            self.said.section = [self._scale(*one) for one in zip(dims, axes, strict=True)]
         if averaged:
             text = ", ".join(sorted(averaged))
             self.said.notes.append(f"averaged from the sides of cells to their middles: {text}")
@@ -685,8 +689,8 @@ class _Reader:
             self._note_first({dim: 0})
             return 0
         ticks: Array = np.array(along.values, dtype=np.float64)
-        heights, words = _up(str(along.name), along.attrs, ticks, "")
-        sea = meaning.is_of_sea(words, float(heights.max()))
+        heights, _, scale = _up(str(along.name), along.attrs, ticks, "")
+        sea = scale.is_of_sea(float(heights.max()))
         index = int(heights.argmax() if sea else heights.argmin())
         if (note := f"{dim} {ticks[index] + 0.0:g}") not in self.said.notes:
             self.said.notes.append(note)
@@ -698,8 +702,8 @@ class _Reader:
         along = self._coordinate(dim)
         if self.letters[dim][0] == "z" and along is not None and along.dtype.kind in "iuf":
             ticks: Array = np.array(along.values, dtype=np.float64)
-            heights, words = _up(str(along.name), along.attrs, ticks, "")
-            self.said.level = meaning.level(words, float(heights[index]))
+            heights, _, scale = _up(str(along.name), along.attrs, ticks, "")
+            self.said.level = scale.at(float(heights[index]))
 
     def _note_first(self, dims: Mapping[str, int]) -> None:
         """Note that the first value along some axes is taken, or the first one with data."""
@@ -977,18 +981,20 @@ class _Reader:
         letter, reason = self.letters[dim]
         along = self._coordinate(dim)
         by = f" by {reason}" if reason else " by the order of the axes"
+        name, attributes = (dim, {}) if along is None else (str(along.name), along.attrs)
+        unit = str(attributes.get("units", "")).strip()
+        scale = meaning.AxisScale(_titled(name, attributes), _unit_of_axis(unit))
         if along is None or along.dtype.kind not in "iuf":
-            count = int(self.file.sizes[dim])
+            count = np.arange(int(self.file.sizes[dim]))
             words = f"{dim!r}{by}" + ("" if places is not None else ", by index")
-            return _Axis(np.arange(count, dtype=np.float64), np.arange(count), words, "index")
-        attributes, name = along.attrs, str(along.name)
+            return _Axis(count.astype(np.float64), count, words, "index", scale._replace(unit=""))
         ticks: Array = np.array(along.values, dtype=np.float64)
         if letter in ("x", "y") and (system := self._system(ticks, attributes)):
-            attributes = attributes | {"units": system}
-        unit = str(attributes.get("units", "")).strip().lower()
-        axis = _Axis(ticks, np.arange(len(ticks)), f"{name!r}{by}")
+            attributes, unit = attributes | {"units": system}, system
+        unit = unit.lower()
+        axis = _Axis(ticks, np.arange(len(ticks)), f"{name!r}{by}", "", scale)
         if letter == "z":
-            ticks, axis.words = _up(name, attributes, ticks, by)
+            ticks, axis.words, axis.scale = _up(name, attributes, ticks, by)
             _set_ticks(axis, ticks, "")
         elif kind := _in_degrees(name, attributes):
             text = {"x": "longitude", "y": "latitude"}.get(letter, name)
@@ -996,53 +1002,30 @@ class _Reader:
             rotated = "grid_" in str(attributes.get("standard_name", "")) or name.startswith(
                 ("grid_l", "rl")
             )
+            if not rotated:
+                axis.scale = meaning.AxisScale(text, "degrees")
             axis.words += " about a rotated pole" if rotated and places is None else ""
             degrees: Array = np.degrees(ticks) if kind == "radians" else ticks
             _set_ticks(axis, degrees, "rotated" if rotated else "degrees", around=letter == "x")
-        elif (scale := meaning.metres(unit)) is not None:
-            axis.words = f"{name!r} in m{by}" + (f", from {unit}" if scale != 1 else "")
-            _set_ticks(axis, scale * ticks, "length")
+        elif (metres := meaning.metres(unit)) is not None:
+            axis.words = f"{name!r} in m{by}" + (f", from {unit}" if metres != 1 else "")
+            axis.scale = scale._replace(unit="m")
+            _set_ticks(axis, metres * ticks, "length")
         elif " since " in unit:
             ticks, unit = self._since(ticks)
-            axis.words = f"time in {unit}{by}"
+            axis.words, axis.scale = f"time in {unit}{by}", meaning.AxisScale("time", unit)
             _set_ticks(axis, ticks, "time")
         elif letter in ("x", "y") and (scanned := re.fullmatch(_ANGLES, unit)):
             # Such an angle times the height of the satellite is a length in PROJ's plane.
-            scale = self._far() * (1e-6 if scanned[1] else 1.0)
-            axis.words = f"{name!r} in {f'm{by}, from {unit}' if scale else f'{unit}{by}'}"
-            _set_ticks(axis, (scale or 1.0) * ticks, "length" if scale else "angle")
+            far = self._far() * (1e-6 if scanned[1] else 1.0)
+            axis.words = f"{name!r} in {f'm{by}, from {unit}' if far else f'{unit}{by}'}"
+            axis.scale = scale._replace(unit="m") if far else scale
+            _set_ticks(axis, (far or 1.0) * ticks, "length" if far else "angle")
         else:
             said = unit or attributes.get("standard_name")
             axis.words += f" in {unit}" if unit else ""
             _set_ticks(axis, ticks, "" if said else "index")
         return axis
-
-    def _scale(self, dim: str, axis: _Axis) -> meaning.AxisScale:
-        """Return the numbers along an axis of a section, in the unit in which they are read."""
-        along, letter = self._coordinate(dim), self.letters[dim][0]
-        name, attributes = (dim, {}) if along is None else (str(along.name), along.attrs)
-        unit = str(attributes.get("units", "")).strip()
-        title = str(attributes.get("long_name", "")).strip() or name
-        factor = -1.0 if "counts down" in axis.words else 1.0
-        pressure = _PRESSURES.get(unit.lower().removesuffix("s")) if letter == "z" else None
-        if pressure is not None:
-            # That of the sea has a unit of its own.
-            in_sea = unit.lower().startswith("d")
-            return meaning.AxisScale(
-                "pressure", unit if in_sea else "hPa", -pressure if in_sea else -1
-            )
-        if axis.kind == "degrees" and letter in ("x", "y"):
-            return meaning.AxisScale("longitude" if letter == "x" else "latitude", "degrees")
-        if axis.kind == "time":
-            times: Array = np.array(along.values, dtype=np.float64)
-            return meaning.AxisScale("time", self._since(times)[1])
-        if axis.kind == "length" or meaning.metres(unit) is not None:
-            if letter == "z":
-                title = "depth" if factor < 0 else "height" if axis.ticks[0] >= 0 else name
-            long = np.ptp(axis.ticks) >= _FAR
-            return meaning.AxisScale(title, "km" if long else "m", factor * (1e3 if long else 1.0))
-        unit = "" if unit == "1" or axis.kind == "index" else meaning.written(unit)
-        return meaning.AxisScale(title, unit, factor)
 
     def _heights(self, name: str, rows: Raw, attributes: Foreign, *, flat: bool) -> Raw:
         """Return heights in metres and up; other values, and all in a volume, as they are."""
@@ -1190,22 +1173,37 @@ def _named_so(pattern: str, name: str, attributes: Mapping[str, Foreign]) -> boo
     return any(re.fullmatch(pattern, str(text).lower()) for text in texts)
 
 
-def _up(name: str, attributes: Mapping[str, Foreign], ticks: Array, by: str) -> tuple[Array, str]:
-    """Return heights that rise, of coordinates that may be pressures or depths, and words."""
+def _titled(name: str, attributes: Mapping[str, Foreign]) -> str:
+    """Return what the numbers along an axis are, in words."""
+    return str(attributes.get("long_name", "")).strip() or name
+
+
+def _unit_of_axis(unit: str) -> str:
+    """Return the unit of the numbers along an axis as it is printed."""
+    return "" if unit == "1" else meaning.written(unit)
+
+
+def _up(
+    name: str, attributes: Mapping[str, Foreign], ticks: Array, by: str
+) -> tuple[Array, str, meaning.AxisScale]:
+    """Return heights that rise, of pressures, depths or heights, their words and their scale."""
     unit = str(attributes.get("units", "")).strip()
     pressure, length = _PRESSURES.get(unit.lower().removesuffix("s")), meaning.metres(unit)
     positive = str(attributes.get("positive", "")).lower()
     if pressure is not None:
         # In the sea a pressure is a depth in decibars.
-        return -pressure * ticks, f"height, pressure in hPa that falls upward{by}"
-    text = f"height {name!r}"
-    if length is not None:
-        ticks, text = length * ticks, f"{text} in m"
+        in_sea = unit.lower().startswith("d")
+        scale = meaning.AxisScale("pressure", *((unit, -pressure) if in_sea else ("hPa", -1.0)))
+        return -pressure * ticks, f"height, pressure in hPa that falls upward{by}", scale
+    text, title, unit = f"height {name!r}", _titled(name, attributes), _unit_of_axis(unit)
     # Depths below 0 rise already.
-    down = _named_so(_DOWN, name, attributes) and np.nanmean(ticks) > 0
-    if positive == "down" or (not positive and down):
-        return -ticks, f"{text} that counts down{by}"
-    return ticks, text + by
+    down = _named_so(_DOWN, name, attributes) and bool(np.nanmean(ticks) > 0)
+    down = positive == "down" or (not positive and down)
+    if length is not None:
+        ticks, text, unit = length * ticks, f"{text} in m", "m"
+        title = "depth" if down else "height" if np.nanmin(ticks) >= 0 else name
+    scale = meaning.AxisScale(title, unit, -1.0 if down else 1.0)
+    return (-ticks, f"{text} that counts down{by}", scale) if down else (ticks, text + by, scale)
 
 
 def _set_ticks(axis: _Axis, ticks: Array, kind: str, *, around: bool = False) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.mesh import meaning
+from vizlight.mesh import meaning, molecules
 from vizlight.mesh.brains import of_affine
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ BOHR = 0.529177210903
 
 
 def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
-    """Return the values of a cube file at their places in angstroms, without its atoms.
+    """Return the values of a cube file at their places in angstroms, its atoms as field arrays.
 
     VTK's reader loses origin and spacing. Orbitals are arrays of their numbers.
 
@@ -36,8 +36,7 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
         axes = [line.split()[:4] for line in head[3:]]
         # A negative number of atoms says that a line with the numbers of orbitals follows them.
         has_orbitals, n_atoms = int(first) < 0, abs(int(first))
-        for _ in range(n_atoms):
-            file.readline()
+        atoms: Array = np.array([file.readline().split()[:5] for _ in range(n_atoms)], np.float64)
         words = file.read().split()
     numbers = ["0"]
     if has_orbitals:
@@ -62,6 +61,8 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     for number, rows in zip(numbers, values.reshape(-1, len(numbers)).T, strict=True):
         name = f"orbital {number}" if has_orbitals else title
         grid.point_data[name] = rows.reshape(shape).ravel(order="F")
-    notes = [f"{n_atoms} atoms are left out"] if n_atoms else []
-    meaning.attach(grid, meaning.Meaning(["x in angstroms", "y", "z"], notes=notes))
+    if n_atoms:
+        grid.field_data[molecules.NUMBERS] = atoms[:, 0].astype(np.intp)
+        grid.field_data[molecules.PLACES] = unit * atoms[:, 2:]
+    meaning.attach(grid, meaning.Meaning(["x in angstroms", "y", "z"]))
     return grid

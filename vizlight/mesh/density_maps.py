@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight.mesh import meaning
+from vizlight.mesh import file_parts, meaning
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -42,12 +42,10 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     """
     import gemmi
 
-    try:
+    with file_parts.errors_of_gemmi(path):
         chart: Foreign = gemmi.read_ccp4_map(str(path))
         # Columns, rows and sections may be any axes.
         chart.setup(float("nan"), gemmi.MapSetup.ReorderOnly)
-    except (RuntimeError, ValueError) as error:
-        raise ValueError(str(error).strip()) from None
     values = np.asarray(chart.grid.array, dtype=np.float32)
     nodes = np.array([chart.header_i32(word) for word in _NODES])
     edges = np.array(chart.grid.unit_cell.orth.mat.tolist()) / np.maximum(nodes, 1)

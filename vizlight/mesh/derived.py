@@ -312,7 +312,7 @@ def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.Structured
     for name in mesh.field_data:
         layer.field_data[name] = mesh.field_data[name]
     said = meaning.of(mesh)
-    if len(said.axes) > 2 and (text := meaning.level(said.axes[2], _middle(layer))):
+    if len(said.scales) > 2 and (text := said.scales[2].at(_middle(layer))):
         meaning.attach(layer, dataclasses.replace(said, level=text))
     return layer
 

@@ -55,6 +55,15 @@ def warn_of_more(path: Path, count: int, unit: str) -> None:
         _check.warn(f"file: '{path}' has {count} {unit} more than it states, which are left out")
 
 
+@contextlib.contextmanager
+def errors_of_gemmi(path: Path) -> Iterator[None]:
+    """Raise ValueError in one line for an error of gemmi, with the number of a line of a text."""
+    try:
+        yield
+    except (RuntimeError, ValueError) as error:
+        raise ValueError(str(error).replace(f"{path}:", "line ").strip()) from None
+
+
 def last(file: BinaryIO) -> bytes:
     """Return the last bytes of a file."""
     file.seek(-min(_END, file.seek(0, 2)), 2)

@@ -25,6 +25,7 @@ from vizlight.mesh import (
     geomview,
     georeference,
     meaning,
+    molecule_files,
     molecules,
     ply,
     polylines,
@@ -34,6 +35,7 @@ from vizlight.mesh import (
     su2,
     tables,
     tetgen,
+    xml_scenes,
 )
 from vizlight.vtk.topology import place_numbers
 
@@ -546,9 +548,11 @@ _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = 
     ".trk": _tracts, ".tck": _tracts, ".trx": _tracts_of_trx, ".pts": _scan, ".xyz": _scan,
     ".las": _lidar, ".laz": _lidar, ".obj": _wavefront, ".off": geomview.read_off,
     ".pdb": molecules.of_pdb, ".ent": molecules.of_pdb, ".cif": molecules.of_cif,
+    ".gro": molecule_files.of_gro, ".mol2": molecule_files.of_mol2,
+    ".mol": molecule_files.of_mol, ".sdf": molecule_files.of_mol,
     ".cube": cubes.read, ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
     **dict.fromkeys(density_maps.SUFFIXES, density_maps.read),
-    ".3ds": studio_3ds.read,
+    ".3ds": studio_3ds.read, ".dae": xml_scenes.read_collada, ".3mf": xml_scenes.read_3mf,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
     **dict.fromkeys((".nhdr", ".nrrd"), brains.image_of_nrrd),
     **dict.fromkeys(tables.SUFFIXES, tables.read),

@@ -383,7 +383,7 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         # A raster without a place is a grid of pixels.
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
         with rasterio.open(path) as file:
-            if (stack := _stack(file, path)) is not None:
+            if (stack := _stack(file, path, nodata)) is not None:
                 return stack
             arrays, units, kinds = _bands(file, path.name.split(".")[0])
             grid, turned = _grid(file)
@@ -439,7 +439,7 @@ def place_alike(lines: pv.DataSet, mesh: pv.DataSet) -> None:
             lines.field_data[key] = mesh.field_data[key]
 
 
-def _stack(file: Foreign, path: Path) -> pv.ImageData | None:
+def _stack(file: Foreign, path: Path, nodata: float | None) -> pv.ImageData | None:
     """Return the pages of a file of images without a place as a volume, None where it has one.
 
     The first page is on top, as that of a pile of paper, which mirrors nothing.
@@ -459,7 +459,8 @@ def _stack(file: Foreign, path: Path) -> pv.ImageData | None:
         words = "pages of several sizes or colours are no volume"
         _check.warn(f"file: '{path}': the first of {len(pages)} pages is read: {words}")
         return None
-    values = np.stack(pages[::-1])[:, ::-1]
+    name = path.name.split(".")[0]
+    values, missing = fills.without_missing(name, np.stack(pages[::-1])[:, ::-1], nodata)
     tags = file.tags()
     size = float(tags.get("TIFFTAG_XRESOLUTION", 0))
     # ImageJ's description has the distance of pages, and the unit in which pixels are counted.
@@ -467,8 +468,9 @@ def _stack(file: Foreign, path: Path) -> pv.ImageData | None:
     pixel = 1 / size if "unit" in said and size > 0 else 1.0
     apart = float(said.get("spacing", pixel))
     volume = pv.ImageData(dimensions=values.shape[::-1], spacing=(pixel, pixel, apart))
-    volume.point_data[path.name.split(".")[0]] = values.ravel()
+    volume.point_data[name] = values.ravel()
     notes = [f"{len(pages)} pages as a volume, the first on top"]
+    notes += fills.say(path, [missing] if missing else [])
     if "spacing" not in said:
         notes.append("pages are taken to be as far apart as pixels")
     meaning.attach(volume, meaning.Meaning(axes=[*meaning.PAGE, "z up"], notes=notes))

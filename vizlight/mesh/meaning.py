@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ANATOMY", "MEANING", "AxisScale", "Meaning", "along_grid", "attach", "components",
-    "is_of_sea", "is_photograph", "line", "metres", "of", "only_vectors", "speed", "usual_unit",
-    "vectors", "ways", "with_named",
+    "is_photograph", "line", "metres", "of", "only_vectors", "speed", "usual_unit", "vectors", "ways",
+    "with_named",
 ]  # fmt: skip
 
 #: Most distinct values of an array of kinds, such as materials or labels.
@@ -66,6 +66,26 @@ class AxisScale(NamedTuple):
     factor: float = 1.0
     is_log: bool = False
 
+    def at(self, coordinate: float) -> str:
+        """Return the number at a coordinate with its unit, an empty text without a unit."""
+        number = coordinate / self.factor
+        # Of a height below a surface its depth is said.
+        number = abs(number) if self.unit == "m" else number
+        digits = f"{number:.4g}" if abs(number) < 1e4 else f"{number:.0f}"
+        return f"{digits} {self.unit}" if self.unit else ""
+
+    def is_of_sea(self, top: float) -> bool:
+        """Return whether these are heights in a sea, of which the highest is at its surface.
+
+        Parameters
+        ----------
+        top : float
+            Largest coordinate.
+        """
+        # Levels of a model of the air count down from its top, and are no lengths.
+        is_depth = self.unit == "m" or "depth" in self.title.lower() or self.title == "pressure"
+        return top <= 0 and self.unit != "hPa" and (is_depth or self.factor > 0)
+
 
 @dataclass
 class Meaning:
@@ -86,8 +106,8 @@ class Meaning:
         Begin and end of the time that the step stands for, none where the file does not say them.
     level : str
         Height, depth or pressure of a single layer, such as "500 hPa"; empty where none is known.
-    section : list of AxisScale
-        Scales of x and y of a vertical section, none of other grids.
+    scales : list of AxisScale
+        Scales of x, y and z of a volume, or of x and y of a section; none of other grids.
     """
 
     axes: list[str] = field(default_factory=list)
@@ -96,10 +116,15 @@ class Meaning:
     time: str = ""
     span: list[float] = field(default_factory=list)
     level: str = ""
-    section: list[AxisScale] = field(default_factory=list)
+    scales: list[AxisScale] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.section = [AxisScale(*scale) for scale in self.section]
+        self.scales = [AxisScale(*scale) for scale in self.scales]
+
+    @property
+    def section(self) -> list[AxisScale]:
+        """Scales of x and y of a vertical section, none of other grids."""
+        return self.scales if len(self.scales) == 2 else []
 
     def add_array(self, name: str, attributes: Foreign) -> None:
         """Keep what the attributes of an array say."""
@@ -164,14 +189,6 @@ def flags(mesh: pv.DataSet, name: str, key: str = "flags") -> dict[float, str]:
     """
     words = [word.partition(":") for word in of(mesh).arrays.get(name, {}).get(key, "").split()]
     return {float(number): text.replace("_", " ") for number, _, text in words}
-
-
-def level(words: str, height: float) -> str:
-    """Return the height, depth or pressure of a layer with its unit, by the words for its axis."""
-    unit = re.search(r" in (hPa|m)\b", words)
-    size = abs(height)
-    number = f"{size:.4g}" if size < 1e4 else f"{size:.0f}"
-    return f"{number} {unit[1]}" if unit else ""
 
 
 def attach(mesh: pv.DataSet, meaning: Meaning) -> None:
@@ -623,21 +640,6 @@ def written(unit: str) -> str:
     if len(known) < len(factors) or not above or len(below) > 1:
         return unit
     return " ".join(above) + "".join(f"/{name}" for name in below)
-
-
-def is_of_sea(words: str, top: float) -> bool:
-    """Return whether heights are those in a sea, of which the highest is at its surface.
-
-    Parameters
-    ----------
-    words : str
-        Words of the axis of heights, of a :class:`Meaning`.
-    top : float
-        Largest height.
-    """
-    # Levels of a model of the air count down from its top, and are no lengths.
-    levels = "counts down" in words and not re.search(" in m |depth", words)
-    return top <= 0 and "pressure" not in words and not levels
 
 
 def along_grid(attributes: Mapping[str, str]) -> bool | None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from vizlight._types import Bools, Foreign, Indices
+    from vizlight._types import Array, Bools, Foreign, Indices
 
 #: Atomic numbers of elements that are no metals.
 NO_METALS = [1, 2, *range(5, 11), *range(14, 19), *range(32, 37), *range(52, 55), 85, 86]
@@ -31,12 +31,17 @@ _PLACE = re.compile(r"\s*[+-]?\d+\.?\d*\s*")
 _SYMBOL = re.compile(r"[A-Za-z]{1,3}\d*$")
 #: Point arrays of a PDB file: their columns, and what stands for none.
 _NUMBERS = {"residue": (22, 26, 0), "occupancy": (54, 60, 1.0), "b_factor": (60, 66, 0.0)}
+#: Field arrays of a volume with the atomic numbers and the places of the molecule in it.
+NUMBERS, PLACES = "atom_numbers", "atom_places"
 #: Name of their marks, and number of them from which a molecule is a long chain.
 BACKBONE, LONG = "backbone_mask", 60
 #: Largest distance in angstroms of two that follow each other, in proteins and in nucleic acids.
 _APART = {6: 4.5, 15: 9.0}
 #: Steps of curves through few and through many of them, in angstroms, and how many are many.
 _FINE, _COARSE, MANY = 0.6, 1.9, 5000
+#: Largest deviation in angstroms of the length of a bond from the sum of the radii of its atoms,
+#: and least share of such bonds where most atoms have none.
+OFF, USUAL = 0.25, 0.75
 #: Share of an edge of a cell up to which places are one.
 ROUNDED = 1e-3
 #: Names and elements of the atoms that stand for a residue of a protein and of a nucleic acid.
@@ -72,7 +77,7 @@ def of_pdb(path: Path) -> pv.PolyData:
     lines = data.decode("latin-1").splitlines()
     ends = [i for i, line in enumerate(lines) if line.startswith("ENDMDL")]
     if len(ends) > 1:
-        _warn_of_states(path, len(ends))
+        warn_of_states(path, len(ends))
     atoms, places = [], []
     for line in lines[: ends[0] if ends else None]:
         if not line.startswith(("ATOM", "HETATM")):
@@ -85,10 +90,8 @@ def of_pdb(path: Path) -> pv.PolyData:
         if line[16:17] in (" ", "A", "1"):
             atoms.append(line)
             places.append([float(column) for column in columns])
-    if not atoms:
-        raise ValueError("it has no atoms")
     elements = [_element(line) for line in atoms]
-    mesh = _joined(elements, places)
+    mesh = joined(elements, places)
     for name, (first, last, none) in _NUMBERS.items():
         words = [line[first:last].strip() for line in atoms]
         try:
@@ -97,7 +100,7 @@ def of_pdb(path: Path) -> pv.PolyData:
             continue  # numbers of residues may have letters
     names = [line[12:16] for line in atoms]
     # A calcium ion has its name one column before that of a carbon.
-    _attach_chains(
+    attach_chains(
         mesh, [line[21:22] for line in atoms],
         [(name[1:].strip() if name[:1] == " " else name, each.upper())
          for name, each in zip(names, elements, strict=True)],
@@ -126,13 +129,11 @@ def of_cif(path: Path) -> pv.PolyData:
     """
     import gemmi
 
-    try:
+    with file_parts.errors_of_gemmi(path):
         document: Foreign = gemmi.cif.read(str(path))
         block = next((each for each in document if len(each.find_loop("_atom_site.id"))), None)
         structure = None if block is None else gemmi.make_structure_from_block(block)
         crystals = [gemmi.make_small_structure_from_block(each) for each in document]
-    except (RuntimeError, ValueError) as error:
-        raise ValueError(str(error).replace(f"{path}:", "line ").strip()) from None
     if structure is not None:
         return _macromolecule(structure, path)
     crystal = next((each for each in crystals if len(each.sites)), None)
@@ -149,17 +150,15 @@ def of_cif(path: Path) -> pv.PolyData:
         rows = np.concatenate([rows, rows[low]])
         shares = np.concatenate([shares, shares[low] + np.eye(3)[axis]])
     edges = np.array(crystal.cell.orth.mat.tolist())
-    mesh = _joined([sites[row].element.name for row in rows], (shares @ edges.T).tolist())
+    mesh = joined([sites[row].element.name for row in rows], (shares @ edges.T).tolist())
     mesh.point_data["occupancy"] = [sites[row].occ for row in rows]
     return mesh
 
 
 def _macromolecule(structure: Foreign, path: Path) -> pv.PolyData:
     """Return the atoms of the first model of a structure of gemmi."""
-    if not len(structure):
-        raise ValueError("it has no atoms")
     if len(structure) > 1:
-        _warn_of_states(path, len(structure))
+        warn_of_states(path, len(structure))
     rows = [
         (chain.name, residue.seqid.num, atom)
         for chain in structure[0]
@@ -168,16 +167,16 @@ def _macromolecule(structure: Foreign, path: Path) -> pv.PolyData:
         if atom.altloc in ("\0", "A", "1")
     ]
     elements = [atom.element.name for _, _, atom in rows]
-    mesh = _joined(elements, [atom.pos.tolist() for _, _, atom in rows])
+    mesh = joined(elements, [atom.pos.tolist() for _, _, atom in rows])
     mesh.point_data["residue"] = [number for _, number, _ in rows]
     mesh.point_data["occupancy"] = [atom.occ for _, _, atom in rows]
     mesh.point_data["b_factor"] = [atom.b_iso for _, _, atom in rows]
     names = [(atom.name, atom.element.name.upper()) for _, _, atom in rows]
-    _attach_chains(mesh, [name for name, _, _ in rows], names)
+    attach_chains(mesh, [name for name, _, _ in rows], names)
     return mesh
 
 
-def _attach_chains(
+def attach_chains(
     mesh: pv.PolyData, chains: Sequence[str], names: Sequence[tuple[str, str]]
 ) -> None:
     """Attach the numbers of chains, with their names, and marks of the atoms of backbones."""
@@ -247,6 +246,37 @@ def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
     return smooth
 
 
+def atoms_in(volume: pv.DataSet, /) -> pv.PolyData:
+    """Return the molecule in a volume of a cube file.
+
+    Parameters
+    ----------
+    volume : pyvista.DataSet
+        Volume as :func:`vizlight.read` reads it, with atoms as field arrays.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Bonds and atoms as of :func:`of_xyz`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no such volume.
+    """
+    from vtkmodules.vtkDomainsChemistry import vtkPeriodicTable
+
+    if not isinstance(volume, pv.DataSet):
+        raise TypeError(_check.message("volume", "a pyvista.DataSet", _check.describe(volume)))
+    if not {NUMBERS, PLACES} <= {*volume.field_data.keys()}:
+        expected = f"the volume of a cube file, with field arrays {NUMBERS!r} and {PLACES!r}"
+        raise ValueError(_check.message("volume", expected, f"{volume.field_data.keys()}"))
+    table = vtkPeriodicTable()
+    numbers = np.ravel(volume.field_data[NUMBERS]).tolist()
+    places = np.reshape(volume.field_data[PLACES], (-1, 3))
+    return joined([table.GetSymbol(int(number)) for number in numbers], places)
+
+
 def _element(line: str) -> str:
     """Return the element of an atom: of its columns, else by its name."""
     named, name = line[76:78].strip(), line[12:16]
@@ -296,44 +326,48 @@ def of_xyz(lines: Sequence[str], path: Path) -> pv.PolyData | None:
         if len(places[-1]) < 3 or not np.isfinite(places[-1]).all():
             raise ValueError(f"line {number + 3} has no element with a place of three numbers")
     if len(words) > 2 + count and words[2 + count] == words[0]:
-        _warn_of_states(path, len(words) // (count + 2))
-    mesh = _joined([atom[0].rstrip("0123456789") for atom in atoms], places)
+        warn_of_states(path, len(words) // (count + 2))
+    mesh = joined([atom[0].rstrip("0123456789") for atom in atoms], places)
     if not mesh.point_data["atom_type"].all():
         number = int(np.argmin(mesh.point_data["atom_type"]))
         raise ValueError(f"line {number + 3} has no element with a place of three numbers")
     return mesh
 
 
-def _joined(elements: Sequence[str], places: Sequence[Sequence[float]]) -> pv.PolyData:
-    """Return atoms with their atomic numbers, 0 for what is no element, joined by bonds."""
-    # Few files need what takes 10 ms to load.
-    from vtkmodules.vtkDomainsChemistry import (
-        vtkMoleculeToLinesFilter,
-        vtkPeriodicTable,
-        vtkSimpleBondPerceiver,
-    )
+def joined(
+    elements: Sequence[str],
+    places: Sequence[Sequence[float]] | Array,
+    pairs: Indices | None = None,
+) -> pv.PolyData:
+    """Return atoms joined by bonds, those of the file or else by their distances.
 
-    table, molecule = vtkPeriodicTable(), vtkMolecule()
+    Parameters
+    ----------
+    elements : sequence of str
+        Symbol of each atom; what is no element has the atomic number 0.
+    places : array_like, shape (N, 3)
+        Places in angstroms.
+    pairs : ndarray of int, shape (M, 2), optional
+        Atoms that are joined.
+
+    Raises
+    ------
+    ValueError
+        If there are no atoms.
+    """
+    # Few files need what takes 10 ms to load.
+    from vtkmodules.vtkDomainsChemistry import vtkPeriodicTable
+
+    if not len(places):
+        raise ValueError("it has no atoms")
+    table, points = vtkPeriodicTable(), np.asarray(places, dtype=np.float64)
     numbers = {name: table.GetAtomicNumber(name) if name else 0 for name in set(elements)}
-    for name, place in zip(elements, places, strict=True):
-        molecule.AppendAtom(numbers[name], *place)
-    bonds, drawn = vtkSimpleBondPerceiver(), vtkMoleculeToLinesFilter()
-    bonds.SetInputData(molecule)
-    drawn.SetInputConnection(bonds.GetOutputPort())
-    drawn.Update()
-    joined = pv.wrap(drawn.GetOutput()).lines.reshape(-1, 3)[:, 1:]
-    pairs = np.asarray(joined, dtype=np.intp)
     of_atoms = np.array([numbers[name] for name in elements], dtype=np.intp)
-    pairs = pairs[~_are_bridged(pairs, of_atoms)]
+    if pairs is None:
+        pairs = _bonds(of_atoms, points)
     lines = np.insert(pairs, 0, 2, axis=1).ravel()
-    alone = np.setdiff1d(np.arange(len(places)), pairs)
-    no_metal = np.isin(of_atoms, NO_METALS)
-    if np.count_nonzero(no_metal[alone]) > np.count_nonzero(no_metal) / 2:
-        # Beads of a coarse model, or one atom of each residue, that meet by chance.
-        alone, lines = np.arange(len(places)), lines[:0]
-    mesh = pv.PolyData(
-        np.array(places), lines=lines, verts=np.column_stack([np.ones_like(alone), alone])
-    )
+    alone = np.setdiff1d(np.arange(len(points)), pairs)
+    mesh = pv.PolyData(points, lines=lines, verts=np.column_stack([np.ones_like(alone), alone]))
     mesh.point_data["atom_type"] = of_atoms
     radii = {name: table.GetVDWRadius(numbers[name]) for name in numbers}
     mesh.point_data["radius"] = [radii[name] for name in elements]
@@ -354,6 +388,35 @@ def _joined(elements: Sequence[str], places: Sequence[Sequence[float]]) -> pv.Po
     return mesh
 
 
+def _bonds(of_atoms: Indices, points: Array) -> Indices:
+    """Return the pairs of atoms that are as near as bonds make them."""
+    from vtkmodules.vtkDomainsChemistry import (
+        vtkMoleculeToLinesFilter,
+        vtkPeriodicTable,
+        vtkSimpleBondPerceiver,
+    )
+
+    molecule, bonds, drawn = vtkMolecule(), vtkSimpleBondPerceiver(), vtkMoleculeToLinesFilter()
+    for number, place in zip(of_atoms.tolist(), points.tolist(), strict=True):
+        molecule.AppendAtom(number, *place)
+    bonds.SetInputData(molecule)
+    drawn.SetInputConnection(bonds.GetOutputPort())
+    drawn.Update()
+    pairs = np.asarray(pv.wrap(drawn.GetOutput()).lines.reshape(-1, 3)[:, 1:], dtype=np.intp)
+    pairs = pairs[~_are_bridged(pairs, of_atoms)]
+    no_metal = np.isin(of_atoms, NO_METALS)
+    alone = np.setdiff1d(np.arange(len(points)), pairs)
+    if np.count_nonzero(no_metal[alone]) <= np.count_nonzero(no_metal) / 2:
+        return pairs
+    table = vtkPeriodicTable()
+    radii = {number: table.GetCovalentRadius(number) for number in {*of_atoms.tolist()}}
+    sums = np.array([radii[number] for number in of_atoms.tolist()])[pairs].sum(axis=1)
+    lengths = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
+    # Beads of a coarse model, or one atom of each residue, meet by chance, at any distance.
+    usual = np.count_nonzero(np.abs(lengths - sums) < OFF)
+    return pairs if usual >= USUAL * len(pairs) else pairs[:0]
+
+
 def _are_bridged(pairs: Indices, numbers: Indices) -> Bools:
     """Return which bonds are of two metals that are joined to one atom of another element.
 
@@ -372,5 +435,6 @@ def _are_bridged(pairs: Indices, numbers: Indices) -> Bools:
     return np.asarray(between & (shared > 0))
 
 
-def _warn_of_states(path: Path, count: int) -> None:
-    _check.warn(f"file: '{path}': the first of {count} states of a molecule is read")
+def warn_of_states(path: Path, count: int, what: str = "states of a molecule") -> None:
+    """Warn that of several states in a file, or several molecules, the first is read."""
+    _check.warn(f"file: '{path}': the first of {count} {what} is read")

@@ -34,8 +34,7 @@ def stretch(mesh: pv.DataSet) -> float:
     """
     flat, up = meaning.of(mesh).section
     x, y, _ = stretched(mesh, 1.0).bounds_size
-    units = {"m" if scale.unit == "km" else scale.unit for scale in (flat, up)}
-    if not min(x, y) > 0 or (units in ({"m"}, {""}) and 1 <= x / y <= LONGEST):
+    if not min(x, y) > 0 or (flat.unit == up.unit in ("m", "") and 1 <= x / y <= LONGEST):
         return 1.0
     factor = float(f"{x / (SHAPE * y):.4g}")
     return 1.0 if abs(factor - 1) < ENOUGH and not _is_deep(mesh) else factor
@@ -59,7 +58,7 @@ def stretched(mesh: DataSetT, factor: float) -> DataSetT:
         mesh.y = -np.log10(np.asarray(mesh.y, dtype=np.float64) / up.factor)
         up = up._replace(factor=-1.0, is_log=True)
     out = blocks.moved(mesh, np.zeros(3), np.array([1.0, factor, 1.0]))
-    said.section = [flat, up._replace(factor=factor * up.factor)]
+    said.scales = [flat, up._replace(factor=factor * up.factor)]
     meaning.attach(out, said)
     return out
 

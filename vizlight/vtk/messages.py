@@ -36,10 +36,10 @@ def first_line(error: Exception | str) -> str:
 
 
 class _Messages:
-    """Messages of VTK while files are read and written, by thread.
+    """Messages of VTK while files are read and written, for each thread its own.
 
     VTK has one window for the messages of a process. It is replaced while any thread listens;
-    messages of other threads go on to the earlier window. No stream is redirected.
+    messages from other threads are passed on to the earlier window. No stream is redirected.
     """
 
     def __init__(self) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -12,7 +12,7 @@ from vizlight.draw.margins import parted
 from vizlight.looks import levels
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import eye_around
-from vizlight.looks.recipes import fields, surfaces
+from vizlight.looks.recipes import fields, lines, surfaces
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
     Doubt,
@@ -21,7 +21,7 @@ from vizlight.looks.recipes.drawing import (
     range_of,
 )
 from vizlight.looks.steps import Step
-from vizlight.mesh import density_maps, meaning
+from vizlight.mesh import density_maps, meaning, molecules
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
@@ -51,12 +51,29 @@ SIGMAS = 2.0
 SMOOTHED = "the values are smoothed by one voxel"
 #: Share of its range through which a second array runs on an isosurface that shows it.
 LEAST_SPREAD = 0.02
+#: Drawing of an isosurface around a molecule, whose far side would hide it too, and normals that
+#: point out of it.
+CLEAR = {"opacity": 0.5, "culling": "back"}
+OUTWARD = {"auto_orient_normals": True, "split_vertices": False, "cell_normals": False}
 #: Most pieces of an isosurface, where none has this share of it.
 MOST_PIECES, LARGE = 50, 0.3
 #: Radians in a pixel from which the normals of an isosurface may turn too fast, and how they are
 #: computed for that.
 ROUGH = 0.1
 PLAIN_NORMALS = {"cell_normals": False, "split_vertices": False, "consistent_normals": False}
+
+
+class _Level(NamedTuple):
+    """Level of an isosurface, or one on each side of 0, and the volume in which it is drawn.
+
+    One that ``is_sure`` is drawn even where slices would be read better.
+    """
+
+    at: float | tuple[float, float]
+    volume: Step
+    notes: list[str]
+    boxed: bool
+    is_sure: bool
 
 
 def isosurface(case: Case) -> Drawing:
@@ -66,97 +83,113 @@ def isosurface(case: Case) -> Drawing:
     else slices, unless an organ was cut out before.
     """
     array = case.needed_array
-    if case.wishes.question == "auto" and (drawing := _both_signs(case, array)) is not None:
-        return drawing
-    notes, has_bones = [], False
-    level, contrast = levels.best_level(case.data.run(), array.name)
-    # What stands out, such as a particle, is as that of a scan; that of a crystal is at its place.
-    is_density = contrast < levels.GOOD and _is_density(case, array)
-    is_scan = not is_density and _is_scan(case, array)
+    level = _level(case, array)
+    if isinstance(level, str):
+        return slices(case, level)
+    part = dict(case.wishes.part) | {"contour": array.name, "level": level.at}
+    whole = replace(case, wishes=replace(case.wishes, part=part))
+    mesh = whole.wishes.isosurface(level.volume)
+    has_molecule = molecules.PLACES in case.data.run().field_data
+    if has_molecule:
+        mesh = Step("outward", ".compute_normals", mesh, **OUTWARD)
+    if not level.is_sure and _is_crumbs(mesh.run()):
+        return slices(case, "; isosurfaces are crumbs")
+    surface, box = _framed(whole, mesh, boxed=level.boxed)
+    second = None if case.wishes.question == "shape" else _second(case, mesh.run())
+    figure = "value"
+    if isinstance(level.at, tuple):
+        words = f"±{levels.number(level.at[1])}"
+        drawing = _of_both_signs(surface, array, level.at, words)
+    elif second is not None:
+        words = f"{levels.number(level.at)} in the colours of {second.name}"
+        drawing = surfaces.values(replace(surface, question="value", array=second))
+    else:
+        figure, words = "shape", levels.number(level.at)
+        drawing = surfaces.surface(replace(surface, question="shape"))
+    if has_molecule:
+        drawing = _around_molecule(case, drawing)
+    if not level.is_sure and _is_rough(surface, mesh, drawing.camera):
+        drawing = replace(drawing, doubt=Doubt((figure,), lambda: slices(case)))
+    return replace(
+        drawing,
+        words=f"isosurface {array.name} = {words}",
+        notes=[*drawing.notes, *level.notes],
+        layers=[*drawing.layers, *([] if box is None else whole.boxed(box, drawing.camera))],
+    )
+
+
+def _level(case: Case, array: Named) -> _Level | str:
+    """Return the level of the isosurface of an array, or why slices are drawn in its place."""
+    is_auto, is_scan = case.wishes.question == "auto", _is_scan(case, array)
+    values, notes = _sample(case, array), [SMOOTHED] * is_scan
+    volume = case.data
     if is_scan:
-        values = _sample(case, array)
-        has_bones = _has_bones(values)
-        is_whole = np.mean(values == values.min()) < CUT_OUT
-        if case.wishes.question == "auto" and is_whole and not has_bones and case.is_of_body:
-            return slices(case)
-        case = replace(case, data=_smoothed(case, array))
-        notes = [SMOOTHED]
-        level, contrast = levels.best_level(case.data.run(), array.name)
-    if has_bones:
+        # The edge of a mask would be a staircase of voxels.
+        volume = Step("smooth", ".gaussian_smooth", volume, std_dev=1.0, scalars=array.name)
+    if is_auto and (size := _size_of_both_signs(values, volume, array)) is not None:
+        if is_scan:
+            volume = Step("closed", ".pad_image", volume, pad_value=0.0, scalars=array.name)
+        return _Level((-size, size), volume, notes, not is_scan, is_sure=True)
+    # What stands out, such as a particle, is as that of a scan; that of a crystal is at its place.
+    is_density = _is_density(case, array)
+    if is_density and levels.best_level(case.data.run(), array.name)[1] < levels.GOOD:
+        level = float(f"{values.mean() + SIGMAS * values.std():.2g}")
+        is_image = isinstance(case.data.run(), pv.ImageData)
+        volume = _closed(case.data, array.name, level) if is_image else case.data
+        notes = [f"the level is {SIGMAS:g} standard deviations above the mean"]
+        return _Level(level, volume, notes, boxed=True, is_sure=True)
+    if is_scan and _has_bones(values):
         level, contrast = BONE, levels.GOOD
         notes.append("bone, by the numbers of computed tomography, in which air is -1000")
-    elif is_density:
-        values = _sample(case, array)
-        level, contrast = float(f"{values.mean() + SIGMAS * values.std():.2g}"), levels.GOOD
-        notes = [f"the level is {SIGMAS:g} standard deviations above the mean"]
-    if contrast < levels.GOOD:
-        steepest = f"the steepest is {contrast:.1f} times the mean"
-        return slices(case, f"; no isosurface stands out ({steepest})")
-    whole = case
-    wishes = replace(
-        case.wishes, part=dict(case.wishes.part) | {"contour": array.name, "level": level}
-    )
-    is_closed = is_scan or (is_density and isinstance(case.data.run(), pv.ImageData))
-    mesh = wishes.isosurface(_closed(case.data, array.name, level) if is_closed else case.data)
-    is_free = wishes.question == "auto" and not is_density
-    if is_free and _is_crumbs(mesh.run()):
-        return slices(whole, "; isosurfaces are crumbs")
-    case, box = _framed(replace(case, wishes=wishes), mesh, boxed=not is_scan)
-    words = f"isosurface {array.name} = {levels.number(level)}"
-    second = _second(whole, mesh.run())
-    if second is None or case.wishes.question == "shape":
-        figure = "shape"
-        drawing = surfaces.surface(replace(case, question="shape"))
+    elif is_scan and is_auto and case.is_of_body and np.mean(values == values.min()) < CUT_OUT:
+        return ""
     else:
-        figure = "value"
-        drawing = surfaces.values(replace(case, question="value", array=second))
-        words += f" in the colours of {second.name}"
-    drawing = replace(drawing, words=words, notes=[*drawing.notes, *notes])
-    if is_free and _is_rough(case, mesh, drawing.camera):
-        drawing = replace(drawing, doubt=Doubt((figure,), lambda: slices(whole)))
-    layers = [] if box is None else whole.boxed(box, drawing.camera)
-    return replace(drawing, layers=[*drawing.layers, *layers])
+        level, contrast = levels.best_level(volume.run(), array.name)
+    if contrast < levels.GOOD:
+        return f"; no isosurface stands out (the steepest is {contrast:.1f} times the mean)"
+    volume = _closed(volume, array.name, level) if is_scan else volume
+    return _Level(level, volume, notes, boxed=not is_scan, is_sure=not is_auto)
 
 
-def _both_signs(case: Case, array: Named) -> Drawing | None:
-    """Return the drawing of the isosurfaces at a level of both signs.
+def _size_of_both_signs(values: Array, volume: Step, array: Named) -> float | None:
+    """Return the size of a level of both signs.
 
     None where 0 is not the ground of values of both signs, as it is of orbitals and statistics.
     """
-    values = _sample(case, array)
     if array.of_cells or not values.size or not values.min() < 0 < values.max():
         return None
     if np.abs(np.percentile(values, (25, 75))).max() > GROUND * np.abs(values).max():
         return None
-    is_scan = _is_scan(case, array)
-    data = _smoothed(case, array) if is_scan else case.data
-    rows = np.asarray(data.run()[array.name], dtype=np.float64)
-    sizes = data.run().copy(deep=False)
+    sizes = volume.run().copy(deep=False)
+    rows = np.asarray(sizes[array.name], dtype=np.float64)
     sizes.point_data[array.name] = np.abs(rows)
     level, contrast = levels.best_level(sizes, array.name)
     lesser, larger = sorted((np.sum(rows < -level), np.sum(rows > level)))
-    if contrast < levels.GOOD or lesser < LESSER_SIDE * larger:
-        return None
-    ends = (-level, level)
-    part = dict(case.wishes.part) | {"contour": array.name, "level": ends}
-    picture = {"cmap": LOBES, "clim": ends} | dict(case.wishes.picture)
-    whole = replace(case, data=data, wishes=replace(case.wishes, part=part, picture=picture))
-    padded = Step("closed", ".pad_image", data, pad_value=0.0, scalars=array.name)
-    mesh = whole.wishes.isosurface(padded if is_scan else data)
-    surface, box = _framed(whole, mesh, boxed=not is_scan)
-    drawing = surfaces.values(replace(surface, question="value", array=array))
+    return None if contrast < levels.GOOD or lesser < LESSER_SIDE * larger else level
+
+
+def _of_both_signs(surface: Case, array: Named, ends: tuple[float, float], words: str) -> Drawing:
+    """Return the drawing of the isosurfaces at a level of both signs, each in its colour."""
+    picture = {"cmap": LOBES, "clim": ends} | dict(surface.wishes.picture)
+    wishes = replace(surface.wishes, picture=picture)
+    drawing = surfaces.values(replace(surface, question="value", array=array, wishes=wishes))
     title, unit = parted(str(drawing.keys[0]["title"]))
-    title = f"{title} = ±{levels.number(level)} {unit}".rstrip()
-    key = drawing.keys[0] | {"title": title, "levels": [-level, 0.0, level]}
-    notes = [*drawing.notes, *[SMOOTHED] * is_scan]
-    layers = [] if box is None else whole.boxed(box, drawing.camera)
-    words = f"isosurface {array.name} = ±{levels.number(level)}"
-    return replace(drawing, words=words, keys=[key], notes=notes, layers=[*drawing.layers, *layers])
+    title = f"{title} = {words} {unit}".rstrip()
+    key = drawing.keys[0] | {"title": title, "levels": [ends[0], 0.0, ends[1]]}
+    return replace(drawing, keys=[key])
 
 
-def _smoothed(case: Case, array: Named) -> Step:
-    """Return the step that smooths a scan: the edge of a mask would be a staircase of voxels."""
-    return Step("smooth", ".gaussian_smooth", case.data, std_dev=1.0, scalars=array.name)
+def _around_molecule(case: Case, drawing: Drawing) -> Drawing:
+    """Return the drawing of an isosurface that lets the molecule in its volume be seen."""
+    atoms = Step("atoms", "files.atoms_in", case.data)
+    contents = Contents(atoms.run())
+    wishes = replace(case.wishes, frame=drawing.camera, picture={}, light={}, make_scene=None)
+    array = contents.named("atom_type")
+    inside = lines.molecule(
+        replace(case, data=atoms, contents=contents, array=array, wishes=wishes)
+    )
+    layers = [replace(each, keywords=each.keywords | CLEAR) for each in drawing.layers]
+    return replace(drawing, layers=[*layers, *inside.layers], keys=[*drawing.keys, *inside.keys])
 
 
 def _framed(case: Case, mesh: Step, *, boxed: bool) -> tuple[Case, Step | None]:
