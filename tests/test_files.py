@@ -1,7 +1,9 @@
 """Files in and out: clear errors, whole files or none."""
 
+import gzip
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import warnings
@@ -16,7 +18,7 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 import vizlight
-from vizlight import files, pieces
+from vizlight import _supervise, _trials, files, pieces
 
 PLY = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\n%s\nend_header\n"
 
@@ -67,6 +69,47 @@ def test_damaged_files_give_one_clear_error(name, content, words, tmp_path, capf
     with pytest.raises(files.FileError, match=expected):
         files.read(path)
     assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.skipif(not _trials._FORKS, reason="a helper does not share what is replaced")
+def test_a_file_that_ends_the_process_is_refused(tmp_path, monkeypatch):
+    """Also one that is packed, of which another one is read; formats of own checks are not."""
+    forked = _trials._forked
+    monkeypatch.setattr(_trials.threading, "active_count", lambda: 1)
+    monkeypatch.setattr(_trials, "_forked", lambda request: tried.append(1) or forked(request))
+    found = files._found
+    tried = []
+
+    def ends(path, *rest):
+        if _trials._is_trial:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return found(path, *rest)
+
+    monkeypatch.setattr(files, "_found", ends)
+    pv.Sphere().save(tmp_path / "a.vtk")
+    packed = gzip.compress((tmp_path / "a.vtk").read_bytes())
+    (tmp_path / "b.vtk.gz").write_bytes(packed)
+    for name in ("a.vtk", "b.vtk.gz"):
+        with pytest.raises(files.FileError, match=rf"{name}' \(its reader was ended by SIGKILL"):
+            files.read(tmp_path / name)
+    assert len(tried) == 2
+    pv.Sphere().save(tmp_path / "a.vtp")
+    files.read(tmp_path / "a.vtp")
+    with monkeypatch.context() as child:
+        child.setattr(_supervise, "has_parent", lambda: True)
+        files.read(tmp_path / "a.vtk")
+    assert len(tried) == 2
+
+
+def test_bytes_that_are_read_with_a_file(tmp_path):
+    for name in ("case/0/p", "case/a.foam", "b.vtu", "c.vtk"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(bytes(1000))
+    (tmp_path / "d.pvtu").write_text('<Piece Source="b.vtu"/>'.ljust(100))
+    (tmp_path / "e.pvd").write_text('<A file="d.pvtu"/> <A file="none.vtu"/>'.ljust(100))
+    assert files._size(tmp_path / "c.vtk") == 1000
+    assert files._size(tmp_path / "case" / "a.foam") == 2000
+    assert files._size(tmp_path / "e.pvd") == 1200
 
 
 def test_missing_file(tmp_path):
@@ -199,7 +242,7 @@ def test_a_symbolic_link_stays_and_its_file_is_replaced(tmp_path):
 def test_the_limit_of_file_sizes_is_seen_before_writing(suffix, tmp_path):
     code = f"""
 import resource, pyvista as pv
-from vizlight import files, pieces
+from vizlight import _supervise, _trials, files, pieces
 resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
 try:
     files.write_mesh(pv.Sphere(), {str(tmp_path / "a")!r} + {suffix!r})

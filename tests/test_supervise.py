@@ -175,6 +175,11 @@ def test_ctrl_c_is_reported_once_though_it_comes_again():
     assert run(body) == (2, "", "interrupted\n")
 
 
+def test_what_ends_a_child_that_has_said_all_is_no_news():
+    body = "import atexit; atexit.register(os.kill, os.getpid(), signal.SIGKILL); return 3"
+    assert run(body) == (3, "", "")
+
+
 def test_the_child_dies_with_its_parent():
     parent = started("print('ready', os.getpid(), flush=True)\ntime.sleep(50)")
     child = int(parent.stdout.readline().split()[1])

@@ -22,6 +22,7 @@ TIERS = [
         "_progress",
         "_questions",
         "_supervise",
+        "_trials",
         "_types",
         "_version",
         "_words",

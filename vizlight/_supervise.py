@@ -27,12 +27,16 @@ if TYPE_CHECKING:
 
     from vizlight._types import Keywords
 
-__all__ = ["Doing", "end_with", "has_parent", "read_limit", "run", "stage"]
+__all__ = [
+    "Doing", "end_with", "has_parent", "limit_memory", "read_limit", "run", "stage", "unreadable",
+]  # fmt: skip
 
 Doing: TypeAlias = Literal["read", "write", "draw"]
 
 #: Exit codes of the command line: a machine that lacks something; bad input.
 LACKING, BAD_INPUT = 1, 2
+#: Exit code of a process in which the time of a file is over, where no signal ends it.
+LATE = 1
 #: Time that a file may take to be read, in seconds, and what each megabyte adds.
 READ_SECONDS, READ_SECONDS_PER_MB = 60.0, 1.0
 #: Seconds after Ctrl-C until it is passed on to the child, as the terminal itself does at once, and
@@ -51,25 +55,29 @@ _PR_SET_PDEATHSIG = 1
 _channel: int | None = None
 
 
-def read_limit(size: int) -> float:
+def read_limit(
+    size: int, seconds: float = READ_SECONDS, per_mb: float = READ_SECONDS_PER_MB
+) -> float:
     """Return the time that a file may take to be read.
 
     Parameters
     ----------
     size : int
         Size of the file in bytes.
+    seconds, per_mb : float, optional
+        Time of the smallest file, and what each megabyte adds, in seconds. The environment variable
+        ``VIZLIGHT_READ_SECONDS`` replaces the first.
 
     Returns
     -------
     float
-        Time in seconds: 60, or the environment variable ``VIZLIGHT_READ_SECONDS``, and one for each
-        megabyte.
+        Time in seconds.
     """
     try:
         base = float(os.environ.get(READ_VARIABLE, ""))
     except ValueError:
-        base = READ_SECONDS
-    return base + READ_SECONDS_PER_MB * size / 1e6
+        base = seconds
+    return base + per_mb * size / 1e6
 
 
 def has_parent() -> bool:
@@ -177,8 +185,11 @@ def run(main: Callable[[], int]) -> int:
     with Path(os.devnull).open("wb") as nothing:
         os.dup2(nothing.fileno(), 2)
     end_with(parent)
-    _limit_memory()
-    return main()
+    limit_memory()
+    code = main()
+    # All is said: what ends the process while it is taken down is no news.
+    os.write(_channel, json.dumps({"code": code}).encode() + b"\n")
+    return code
 
 
 def _interrupt_once(number: int, frame: FrameType | None) -> None:
@@ -215,7 +226,7 @@ def end_with(parent: int) -> None:
         os._exit(LACKING)
 
 
-def _limit_memory() -> None:
+def limit_memory() -> None:
     """Refuse to allocate more than the machine has: counts in damaged files ask for any amount."""
     import resource
 
@@ -258,6 +269,8 @@ def _wait(child: int, reader: int) -> int:
     signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
     if os.WIFEXITED(status):
         return os.WEXITSTATUS(status)
+    if stages and "code" in stages[-1]:
+        return int(stages[-1]["code"])
     # A child that was killed could not remove its temporary folders.
     for step in stages:
         if step["temporary"]:
@@ -265,6 +278,27 @@ def _wait(child: int, reader: int) -> int:
     text, code = _what_happened(signal.Signals(os.WTERMSIG(status)), stages, ended_by)
     sys.stderr.write(f"vizlight: {_words.printable(text)}\n")
     return code
+
+
+def unreadable(path: str, code: int, seconds: float) -> str:
+    """Return the message on a file that ended the process that read it.
+
+    Parameters
+    ----------
+    path : str
+        Path of the file.
+    code : int
+        Exit code, negative for a signal.
+    seconds : float
+        Time that the file had.
+    """
+    if code == -getattr(signal, "SIGALRM", -LATE) or code == LATE:
+        why = f"not read within {seconds:.0f} s; the file may be damaged"
+        why += f", {READ_VARIABLE}= allows more time"
+    else:
+        by = signal.Signals(-code).name if code < 0 else f"exit code {code}"
+        why = f"its reader was ended by {by}; the file may be damaged"
+    return f"file: expected a file that can be read, got '{path}' ({why})"
 
 
 def _lines(reader: int) -> Iterator[bytes]:
@@ -308,12 +342,8 @@ def _what_happened(
     first = next(step for step in stages if step["doing"] == last["doing"])
     path = f"'{first['path']}'"
     if last["doing"] == "read":
-        why = f"its reader was ended by {by.name}; the file may be damaged"
-        if by == signal.SIGALRM:
-            seconds = max(step["seconds"] for step in stages)
-            why = f"not read within {seconds:.0f} s; the file may be damaged"
-            why += f", {READ_VARIABLE}= allows more time"
-        return f"file: expected a file that can be read, got {path} ({why})", BAD_INPUT
+        seconds = max(step["seconds"] for step in stages)
+        return unreadable(first["path"], -by, seconds), BAD_INPUT
     if last["doing"] == "write":
         return (
             f"output: expected a file that can be written, got {path} (its writer was ended "

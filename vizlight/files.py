@@ -5,6 +5,7 @@ from __future__ import annotations
 import bz2
 import contextlib
 import errno
+import functools
 import gzip
 import lzma
 import os
@@ -20,11 +21,12 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
-from vizlight import _check, _supervise
+from vizlight import _check, _supervise, _trials
 from vizlight.mesh import (
     blocks,
     brains,
     cf_grids,
+    ensight,
     fills,
     foreign_files,
     georeference,
@@ -82,6 +84,9 @@ FORMATS: dict[str, tuple[str, ...]] = {
 }
 #: Ends of names of files that have points for each face, or for each colour.
 SOUPS = (".obj", ".off", ".ply", ".stl", ".wrl")
+#: Formats that need no trial: of some thousand damaged files of each, none ended the process by
+#: which :func:`.short_files.missing_part` had let it be read.
+GUARDED = (".obj", ".off", ".ply", ".stl", ".vti", ".vtp", ".vtr", ".vts", ".vtu")
 #: Indices of pieces of one mesh, whose cells name their points, and of pieces of one grid.
 PIECES, GRID_PIECES = (".pvtp", ".pvtu"), (".pvti", ".pvtr", ".pvts")
 #: Ends of names of files in which y is up.
@@ -264,12 +269,7 @@ def _read(
     reading = _supervise.stage("read", path, seconds=limit)
     # Damaged numbers overflow in readers, which say what is wrong beside that.
     with reading, messages.captured_errors() as errors, np.errstate(all="ignore"):
-        # A file that is cut short may end the process inside its reader, and is refused before.
-        if short := short_files.missing_part(path):
-            raise _damaged(path, short)
-        # VTK ends the process where a piece of a grid has an error.
-        for piece in references.named(path) if path.suffix.lower() in GRID_PIECES else ():
-            _read(piece, None, (), whole=True)
+        _check_before(path, time, overlays, at, nodata, whole=whole)
         try:
             data: Foreign = _found(path, time, at, nodata)
             if _faults(errors):
@@ -306,6 +306,63 @@ def _read(
     if notes:
         _check.warn(f"file: '{path}': {'; '.join(dict.fromkeys(notes))}")
     return meshes
+
+
+def _check_before(
+    path: Path,
+    time: float | str | None,
+    overlays: Sequence[Path],
+    at: Mapping[str, object] | None,
+    nodata: float | None,
+    *,
+    whole: bool,
+) -> None:
+    """Raise FileError for a file that may end the process inside its reader."""
+    if short := short_files.missing_part(path):
+        raise _damaged(path, short)
+    if _trials.are_needed():
+        if path.suffix.lower() in GUARDED and not overlays:
+            return
+        tried = functools.partial(_refusal, path, time, overlays, at, nodata, whole=whole)
+        if refusal := _trials.refusal(tried, path, _size(path)):
+            raise FileError(refusal)
+    elif path.suffix.lower() in GRID_PIECES:
+        # VTK ends the process where a piece of a grid has an error.
+        for piece in references.named(path):
+            _read(piece, None, (), whole=True)
+
+
+def _refusal(
+    path: Path,
+    time: float | str | None,
+    overlays: Sequence[Path],
+    at: Mapping[str, object] | None,
+    nodata: float | None,
+    *,
+    whole: bool,
+) -> str:
+    """Return why a file is refused, or "" where it is read, or where its caller is at fault."""
+    try:
+        with _check.held():
+            _read(path, time, overlays, at, nodata, whole=whole)
+    except FileError as error:
+        return str(error)
+    except Exception:  # noqa: BLE001 - of any type: it is raised again where the file is read
+        return ""
+    return ""
+
+
+def _size(path: Path) -> int:
+    """Return the number of bytes of a file, and of those that are read with it."""
+    if path.is_dir() or path.suffix.lower() == ".foam":
+        folder = path if path.is_dir() else path.parent
+        return sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
+    if path.suffix.lower() == ".case":
+        with path.open("rb") as case:
+            return ensight.size(case)
+    files = {path, *references.named(path)}
+    files |= {further for file in files if file.is_file() for further in references.named(file)}
+    return sum(file.stat().st_size for file in files if file.is_file())
 
 
 def _meshes(

@@ -222,6 +222,16 @@ def test_a_file_that_a_reader_of_meshio_refuses(tmp_path, capsys):
     assert capsys.readouterr().out == ""
 
 
+def test_a_warning_of_a_reader_is_no_second_line(tmp_path):
+    """NumPy warns of lines without numbers among those that are counted."""
+    pytest.importorskip("meshio")
+    path = tmp_path / "a.vol"
+    rows = "1 0 0 0 0 1 2 3\n# none\n1 0 0 0 0 1 2 3\n"
+    path.write_text(f"mesh3d\ndimension\n3\ngeomtype\n0\nsurfaceelements\n2\n{rows}")
+    with pytest.raises(files.FileError, match=r"a\.vol"):
+        vizlight.read(path)
+
+
 @pytest.mark.parametrize(
     ("name", "module", "words"),
     [

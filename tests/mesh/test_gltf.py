@@ -38,6 +38,7 @@ WRONG = {
     "bytes": (gltf("buffers", byteLength=100), "of 100 bytes of a buffer"),
     "file": (gltf("buffers", uri="b.bin"), "'b.bin', which is missing"),
     "view": (gltf("bufferViews", byteLength=37), "ends at 37 of 36 bytes of its buffer"),
+    "target": (gltf("bufferViews", target=34961), "a view has the target 34961"),
     "array": (gltf("accessors", count=4), "ends at 48 of 36 bytes of its view"),
     "reference": (gltf("accessors", bufferView=10**9), "number 1000000000 of 1 buffer"),
     "cycle": (gltf("nodes", children=[0]), "nodes are in a cycle"),

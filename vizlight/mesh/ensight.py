@@ -153,6 +153,8 @@ def _of_last_step(folder: Path, name: str) -> Path | None:
 def _mapped(path: Path) -> mmap.mmap:
     """Return the content of a file, which is not read at once."""
     with path.open("rb") as file:
+        if not file.seek(0, 2):
+            raise ValueError("it is empty")
         return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
 
 

@@ -254,8 +254,9 @@ def _of_meshio(path: Path) -> pv.DataSet:
         reader = getattr(meshio, kind)
         try:
             with warnings.catch_warnings():
-                # NumPy warns of an empty file, which is an error afterwards.
-                warnings.filterwarnings("ignore", "genfromtxt: ")
+                # NumPy warns of lines without numbers, which the reader counts, and of others.
+                warnings.simplefilter("ignore")
+                warnings.filterwarnings("error", "string or file could not be read to its end")
                 data = reader.read(path)
         except (meshio.ReadError, LookupError, ValueError):
             # Several formats may have one suffix: only the last of them tells what is wrong.

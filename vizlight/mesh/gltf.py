@@ -20,6 +20,8 @@ __all__ = ["missing_part"]
 #: Numbers in an element of glTF, and bytes of a number.
 _ELEMENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 _COMPONENTS = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
+#: What a view of a buffer is for: points, or the numbers of them.
+_TARGETS = (34962, 34963)
 
 
 def missing_part(file: BinaryIO) -> str:
@@ -72,6 +74,8 @@ def _buffers(folder: Path, lists: dict[str, list[Keywords]]) -> str:
     for view in lists.get("bufferViews", []):
         (buffer,) = _parts_of(lists, "buffers", view["buffer"])
         end = _whole(view, "byteOffset", 0) + _whole(view, "byteLength")
+        if view.get("target", _TARGETS[0]) not in _TARGETS:
+            return f"a view has the target {view['target']!r}"  # VTK ends the process
         if end > buffer["byteLength"]:
             return f"a view ends at {end} of {buffer['byteLength']} bytes of its buffer"
     for array in lists.get("accessors", []):

@@ -10,14 +10,12 @@ import gzip
 import math
 import re
 import struct
-import subprocess
-import sys
 import zipfile
 import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
-from vizlight import _check, _supervise
+from vizlight import _check
 from vizlight.mesh import ensight, file_parts, gltf, legacy_vtk, references, vtk_xml
 
 if TYPE_CHECKING:
@@ -30,10 +28,6 @@ __all__ = ["missing_part"]
 _HEAD = 4096
 #: Ends of names of files that name their pieces, all of which are read.
 _INDICES = (".vtm", ".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu")
-
-
-#: Errors of a header that is damaged; a name in it may be none that the system takes.
-_UNREADABLE = (AttributeError, LookupError, OSError, TypeError, ValueError, struct.error)
 
 
 def missing_part(path: Path, /) -> str:
@@ -59,7 +53,7 @@ def missing_part(path: Path, /) -> str:
                 pieces = [piece for piece in references.named(path) if piece != path]
                 parts = ((at.name, missing_part(at)) for at in pieces if at.is_file())
                 lacking = next((f"'{name}': {reason}" for name, reason in parts if reason), "")
-        except _UNREADABLE as error:
+        except Exception as error:  # noqa: BLE001 - of any type, by what is damaged
             return f"its header cannot be read: {error}"
     return lacking
 
@@ -89,7 +83,7 @@ def _zip(file: BinaryIO) -> str:
     try:
         with zipfile.ZipFile(file) as parts:
             bad = parts.testzip()
-    except zipfile.BadZipFile as error:
+    except (zipfile.BadZipFile, NotImplementedError) as error:
         return str(error)
     return f"the check sum of {bad!r} is not that of its data" if bad else ""
 
@@ -144,67 +138,6 @@ def _netcdf(file: BinaryIO) -> str:
     except Exception as error:  # noqa: BLE001 - of any type, by the place of the cut
         return f"a variable is not whole: {error}"
     return ""
-
-
-#: Reads a file of Exodus; the exit code is 0 if it has points.
-_EXODUS = """
-import sys
-from vtkmodules.vtkIOExodus import vtkExodusIIReader
-reader = vtkExodusIIReader()
-reader.SetFileName(sys.argv[1])
-reader.UpdateInformation()
-for kind in range(20):
-    for i in range(reader.GetNumberOfObjectArrays(kind)):
-        reader.SetObjectArrayStatus(kind, reader.GetObjectArrayName(kind, i), 1)
-reader.Update()
-sys.exit(not reader.GetOutput().GetNumberOfPoints())
-"""
-#: Reads the last step of a case of EnSight, which says by itself where it has no points.
-_ENSIGHT = """
-import sys
-from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
-from vtkmodules.vtkIOEnSight import vtkGenericEnSightReader
-reader = vtkGenericEnSightReader()
-reader.SetCaseFileName(sys.argv[1])
-reader.UpdateInformation()
-steps = reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
-reader.UpdateTimeStep(steps[-1]) if steps else reader.Update()
-"""
-#: Seconds that a program may take, and what each megabyte adds.
-_SECONDS, _SECONDS_PER_MB = 15.0, 0.5
-
-
-def _exodus(file: BinaryIO) -> str:
-    """Read a file of HDF5 in another process: one that is damaged ends it, or spoils later ones."""
-    lacking = _netcdf(file)
-    file.seek(0)
-    if lacking or file.read(len(_HDF)) != _HDF:
-        return lacking
-    return _fault_elsewhere(file, _EXODUS, "Exodus", file.seek(0, 2))
-
-
-def _ensight(file: BinaryIO) -> str:
-    """Read a case in another process: one without some lines ends it, or is read without end."""
-    lacking = ensight.missing_part(file)
-    return lacking or _fault_elsewhere(file, _ENSIGHT, "EnSight", ensight.size(file))
-
-
-def _fault_elsewhere(file: BinaryIO, program: str, name: str, size: int) -> str:
-    """Return how a program that reads a file of some bytes ends, or "" if it ends well."""
-    # The command line is another process.
-    if _supervise.has_parent() or not sys.executable:
-        return ""
-    try:
-        run = subprocess.run(
-            [sys.executable, "-c", program, file.name],
-            capture_output=True,
-            stdin=subprocess.DEVNULL,
-            timeout=_SECONDS + _SECONDS_PER_MB * size / 1e6,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return f"VTK's reader of {name} does not come to an end of it"
-    return f"VTK's reader of {name} cannot read it to its end" if run.returncode else ""
 
 
 #: Bytes of the header of a binary STL file with its count, and of each triangle.
@@ -423,7 +356,10 @@ def _obj(file: BinaryIO) -> str:
     text = file.read()
     if b"\0" in text:
         return "it has bytes of 0, and text has none"
-    words = {*b" ".join(re.findall(rb"(?m)^[ \t]*[fl][ \t].*", text)).split()}
+    words = {*b" ".join(re.findall(rb"(?m)^[ \t]*[fl][ \t]([^#\r\n]*)", text)).split()}
+    # VTK reads 0x7fffffff as a number, too.
+    if odd := next((word for word in words if b"x" in word.lower()), b""):
+        return f"a face has the corner {odd.decode('latin-1')!a}"
     corners = [word.split(b"/") for word in words if b"/" in word]
     for i, (key, name) in enumerate(_CORNERS_OF_OBJ):
         # At least as many as there are: words may end so, too.
@@ -466,7 +402,7 @@ def _grib(file: BinaryIO) -> str:
 
 #: Checks of a file that is open, by its suffix: each returns the reason why it is refused, or "".
 _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
-    ".case": _ensight, ".vtk": legacy_vtk.missing_part, ".mdpa": _mdpa, ".obj": _obj,
+    ".case": ensight.missing_part, ".vtk": legacy_vtk.missing_part, ".mdpa": _mdpa, ".obj": _obj,
     ".png": _png, ".stl": _stl, ".gii": _gifti, ".foam": _foam, ".bmp": _bmp, ".trx": _zip,
     ".vtm": vtk_xml.missing_block, **dict.fromkeys((".gz", ".mgz"), _gzip),
     **dict.fromkeys((".hdf", ".vtkhdf"), _vtkhdf),
@@ -479,6 +415,5 @@ _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     **dict.fromkeys((".dat", ".tec"), _tecplot),
     **dict.fromkeys((*_INDICES[1:], ".vtp", ".vtu"), vtk_xml.missing_part),
     **dict.fromkeys((".vti", ".vtr", ".vts"), vtk_xml.missing_piece),
-    **dict.fromkeys((".nc", ".nc4", ".cdf"), _netcdf),
-    **dict.fromkeys((".e", ".ex2", ".exo", ".exii"), _exodus),
+    **dict.fromkeys((".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii"), _netcdf),
 }  # fmt: skip
