@@ -318,7 +318,6 @@ OWN = {
     "blinn_from_phong": {"light_eye_angle": 1.0},
     "phong_from_blinn": {"light_eye_angle": 1.0},
     "engine.plan": {"k": 1},
-    "observed": {"observer": None},
     "engine.run": {"inputs": inputs, "options": engine.ShadingOptions()},
     "engine.shade": {"tangents": unit(4, 3, seed=2), "normals": unit(4, 3, seed=3)},
 }  # fmt: skip

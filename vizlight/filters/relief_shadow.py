@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -33,7 +32,6 @@ from vizlight.shading.results import (
     of_filter,
     of_light,
 )
-from vizlight.verify.report import note_ratio
 from vizlight.vtk.cells import check_whole, triangles
 from vizlight.vtk.parts import share_of
 
@@ -124,8 +122,8 @@ class Shadows(NamedTuple):
         return cls(surface, caster(surface, scene, options), lights, share)
 
     def ratios(self, options: ReliefOptions, *, progress_bar: bool) -> Array:
-        """Return t of each point (rows) and light, and add it to a report."""
-        start, shadow, lights = time.perf_counter(), self.caster, self.lights
+        """Return t of each point (rows) and light."""
+        shadow, lights = self.caster, self.lights
         t = np.empty((len(shadow.points), len(lights)))
         discs = [_disc(light, options) for light in lights]
         count, done = len(t), 0
@@ -138,14 +136,16 @@ class Shadows(NamedTuple):
                     done += count
                     report(done)
                 t[:, i] = column / len(disc)
-
-        def again(point: int, light: int) -> float:
-            return float(np.mean([shadow.reference(point, lamp) for lamp in discs[light]]))
-
-        size = t.itemsize * len(t) * (1 + len(lights) * options.components)
-        effort = shadow.effort * max(map(len, discs))
-        note_ratio(t, shadow.valid, time.perf_counter() - start, size, again, effort)
         return t
+
+    def reference(self, point: int, light: int, options: ReliefOptions) -> float:
+        """Return t of a point and a light by a second implementation."""
+        disc = _disc(self.lights[light], options)
+        return float(np.mean([self.caster.reference(point, lamp) for lamp in disc]))
+
+    def effort(self, options: ReliefOptions) -> int:
+        """Return the number of planes of nodes or triangles that one reference tests; 0 if none."""
+        return self.caster.effort * max(len(_disc(light, options)) for light in self.lights)
 
     @property
     def ground(self) -> str:
