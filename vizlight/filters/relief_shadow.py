@@ -149,23 +149,26 @@ class Shadows(NamedTuple):
 
     @property
     def ground(self) -> str:
-        """Digest of the nodes of a height field, empty for other surfaces."""
-        is_field = isinstance(self.caster, FieldCaster) and isinstance(self.surface, Grid)
-        return digest(self.caster.points) if is_field else ""
+        """Digest of the ground: of its points, and of a surface of its normals and cells too."""
+        if isinstance(self.surface, Grid):
+            return digest(self.caster.points)
+        cells = records.fingerprint(self.surface)
+        return f"{records.source(self.caster.points, self.caster.normals)} {cells}"
 
     def recorded(self, options: ReliefOptions, scene: Scene) -> Array | None:
-        """Return t of each point from its array, None where that is of other ground or light.
+        """Return t of each point from its arrays, None where they are of other ground or light.
 
-        Of several lights the array has the mean alone.
+        Of several lights a mesh has the mean alone, unless it was lit with ``components``.
         """
-        record, ground = records.read(self.surface, options.name) or {}, self.ground
-        if len(self.lights) != 1 or not ground or record.get("ground") != ground:
+        name, count = options.name, len(self.lights)
+        record, ours = records.read(self.surface, name) or {}, records.made(self.surface, name)
+        columns = [name] if count == 1 else [f"{name}_{i}" for i in range(count)]
+        if record.get("ground") != self.ground or not ours.issuperset(columns):
             return None
         cast_by = ReliefOptions.of(record["options"] | {"lit": True, "components": False})
-        same = cast_by == options and Scene.from_dict(record["scene"]) == scene
-        if not same or options.name not in records.made(self.surface, options.name):
+        if cast_by != options or Scene.from_dict(record["scene"]) != scene:
             return None
-        return np.asarray(self.surface.point_data[options.name])[:, np.newaxis]
+        return np.column_stack([np.asarray(self.surface.point_data[key]) for key in columns])
 
     def inputs(self, t: Array) -> ShadingInputs:
         """Return what the engine lights: it multiplies each light by its own column of t."""

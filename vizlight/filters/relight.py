@@ -308,7 +308,7 @@ def shadows_of(
 
 
 def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
-    """Return the source of light with a cos-theta shadow, cast again unless its array suffices."""
+    """Return the source of light with a cos-theta shadow, cast again unless its arrays suffice."""
     shadows, relief_options = shadows_of(mesh, options, scene)
     t = shadows.recorded(relief_options, scene)
     if t is None:
