@@ -44,7 +44,8 @@ class Source(NamedTuple):
     changed; None where that takes the filter itself. Where normals are turned to the eye,
     ``inputs`` has them as they are and ``sided`` turns them. ``inside`` is the number of points of
     a volume that are not on its surface. ``shares`` gives the shares of light inside a bundle.
-    ``field`` is the height field that casts the shadow, or why a shader cannot cast it.
+    ``field`` is the height field by which a shader casts the shadow, and ``uncast`` says why there
+    is none.
     """
 
     mesh: pv.DataSet
@@ -54,7 +55,8 @@ class Source(NamedTuple):
     sided: Sided | None = None
     inside: int = 0
     shares: bundles.Dimmed | None = None
-    field: EvenField | str = ""
+    field: EvenField | None = None
+    uncast: str = ""
 
     @property
     def facing(self) -> Facing:
@@ -313,12 +315,12 @@ def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
     t = shadows.recorded(relief_options, scene)
     if t is None:
         t = shadows.ratios(relief_options, progress_bar=False)
-    field: EvenField | str = "a closed surface casts it"
-    if isinstance(shadows.caster, FieldCaster):
-        field = shadows.caster.even(mesh)
+    field, uncast = None, "a closed surface casts it"
     if relief_options.angular_diameter > 0:
-        field = "the lights are discs"
-    return Source(mesh, shadows.inputs(t), ShadingOptions(), None, field=field)
+        uncast = "the lights are discs"
+    elif isinstance(shadows.caster, FieldCaster):
+        field, uncast = shadows.caster.even(mesh)
+    return Source(mesh, shadows.inputs(t), ShadingOptions(), None, field=field, uncast=uncast)
 
 
 def _of_fur(
