@@ -146,10 +146,9 @@ class Command:
             codes.append(draw(functools.partial(written, steps), kind))
         # Last, so that an error is the only word on a step that failed.
         say(f"shown    {look.summary}")
-        # A movie of all steps has no step of its own to tell.
-        in_time = any(steps[-1].path == "film.save" for steps in outputs)
+        of_one_step = {steps[-1].note for steps in outputs if steps[-1].path == "film.save"}
         for note in dict.fromkeys(look.notes):
-            if not (in_time and note.startswith("time ")):
+            if note not in of_one_step:
                 say(f"note     {one_line(note)}")
         if look.others:
             say(f"ask      {'; '.join(other.shell for other in look.others)}")
