@@ -22,11 +22,11 @@ from vizlight import DepthCue, Light, Material, Scene, View, cli, files
 from vizlight.draw import glsl as program
 from vizlight.draw import html
 from vizlight.mesh import brains, foreign_files
+from vizlight.observers.check import reference
 from vizlight.shading.arrays import Shading
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.shading.plan import decide
-from vizlight.verify import report
 from vizlight.verify.between import columns
 
 CUE = DepthCue(front=2, back=9, front_scale=0.9, back_scale=0.3, cue=0.1)
@@ -71,8 +71,8 @@ WITHOUT = {
     ("glsl", "precision"): "fragments are float32",
     ("oracle", "components"): "it always returns them",
     ("oracle", "precision"): "it has the one of its numbers",
-    ("filtered", "line_field"): "it matters between points, to refine and to the report",
-    ("page", "line_field"): "it matters between points, to refine and to the report",
+    ("filtered", "line_field"): "it matters between points, to refine and to a check",
+    ("page", "line_field"): "it matters between points, to refine and to a check",
     ("page", "components"): "a page shows one picture",
     ("shell", "positions"): "lights in n-space are for scripts",
 }
@@ -256,7 +256,7 @@ def test_a_field_means_on_each_manifold_what_it_means_to_the_oracle(kind, name, 
         if "shadow" in inputs:
             inputs["shadow"] = inputs["shadow"][:, : len(scene.lights)]
         inputs = ShadingInputs(**inputs)
-        true = [report.reference(inputs, i, scene, options, 1e-14) for i in range(inputs.count)]
+        true = [reference(inputs, i, scene, options, 1e-14) for i in range(inputs.count)]
         lit.append([[light.luminance, *light.rgb] for light in true])
         plan = decide(scene, inputs.layout, options)
         for algebra in (by_numpy, by_text):

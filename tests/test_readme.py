@@ -170,7 +170,7 @@ def test_the_architecture_page_names_tiers_files_and_modules_that_exist():
 
 def test_the_filters_that_readme_and_guide_name_are_all():
     """Names in lower case that the package gives are its filters and a few helpers."""
-    helpers = {"direction_colors", "example_path", "load_example", "provenance", "read", "report"}
+    helpers = {"direction_colors", "example_path", "load_example", "provenance", "read", "check"}
     helpers |= {"to_polydata"}
     filters = {name for name in vizlight.__all__ if name.islower()} - helpers
     guide = "".join(map(text_of, GUIDE))

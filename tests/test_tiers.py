@@ -131,7 +131,7 @@ def test_every_part_has_a_tier():
     ("module", "line", "fault"),
     [
         ("vizlight.model.frames", "from vizlight.scene import Scene", "above"),
-        ("vizlight.shading.engine", "from vizlight.verify import report", "above"),
+        ("vizlight.shading.engine", "from vizlight.verify import between", "above"),
         ("vizlight.shading.engine", "    from vizlight.verify.oracle import light", "above"),
         ("vizlight.filters.fur", "from vizlight.mesh.records import _plain", "private _plain"),
         ("vizlight.model.frames", "from vizlight.model import reflection", "circle"),

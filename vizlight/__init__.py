@@ -57,6 +57,7 @@ if _typing.TYPE_CHECKING:
     from vizlight.looks.look import Look as Look, look as look
     from vizlight.mesh.polylines import direction_colors as direction_colors
     from vizlight.mesh.records import provenance as provenance
+    from vizlight.observers.check import Report as Report, check as check
     from vizlight.observers.legibility import Legibility as Legibility, legibility as legibility
     from vizlight.scene import (
         DepthCue as DepthCue,
@@ -67,7 +68,6 @@ if _typing.TYPE_CHECKING:
     )
     from vizlight.shading import engine as engine
     from vizlight.shading.options import Bundle as Bundle
-    from vizlight.verify.report import report as report
 
 
 #: Public names by their modules.
@@ -93,13 +93,13 @@ _NAMES = {
     "geometry.solids.primitives": "Block Frustum Sphere Torus",
     "mesh.polylines": "direction_colors",
     "mesh.records": "provenance",
+    "observers.check": "Report check",
     "observers.legibility": "Legibility legibility",
     "draw.gltf": "save_gltf",
     "draw.html": "live_html",
     "looks.look": "Look look",
     "scene": "DepthCue Light Material Scene View",
     "shading.options": "Bundle",
-    "verify.report": "report",
 }
 _HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
 #: Modules that are attributes of the package, by the folders that hold them.

@@ -4,6 +4,8 @@ import browsers
 import pytest
 import pyvista as pv
 
+import vizlight
+
 
 @pytest.fixture(autouse=True)
 def _closed():
@@ -60,3 +62,16 @@ def opened(request):
     yield call
     for page in pages:
         page.close()
+
+
+@pytest.fixture
+def shown(opened, tmp_path):
+    """Return what writes a page, black behind, and opens it: alone or beside its panel."""
+
+    def call(mesh, scene, *, wide=False, **options):
+        options = {"background": "black"} | options
+        path = vizlight.live_html(mesh, tmp_path / "a.html", scene=scene, **options)
+        page, _ = opened(path, bare=False, **browsers.WIDE) if wide else opened(path)
+        return page
+
+    return call

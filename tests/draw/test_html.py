@@ -5,11 +5,9 @@ import functools
 import http.server
 import io
 import json
-import os
 import re
 import threading
 import zlib
-from pathlib import Path
 
 import browsers
 import firefox
@@ -30,12 +28,7 @@ from vizlight.mesh.strokes import moved_widths
 
 pytestmark = pytest.mark.opengl
 
-#: The checker of the npm package axe-core, of the viewer's recipe or of a variable.
-AXE = Path(vizlight.__file__).parent / "draw/web/node_modules/axe-core/axe.min.js"
-AXE = Path(os.environ.get("VIZLIGHT_AXE", AXE))
 SIZE = {"width": 300, "height": 250}
-#: A window with its panel beside the picture.
-WIDE = {"viewport": {"width": 1200, "height": 1000}}
 FAR = Light(direction=(1, 0.9, 0.5), intensity=0.8)
 CUE = DepthCue(back_scale=0.3, cue=0.1, color=(0.3, 0.4, 1.0))
 
@@ -73,29 +66,6 @@ def fox():
     made = firefox.Firefox()
     yield made
     made.close()
-
-
-@pytest.fixture
-def shown(opened, tmp_path):
-    """Return what writes a page, black behind, and opens it: alone or beside its panel."""
-
-    def call(mesh, scene, *, wide=False, **options):
-        options = {"background": "black"} | options
-        path = vizlight.live_html(mesh, tmp_path / "a.html", scene=scene, **options)
-        page, _ = opened(path, bare=False, **WIDE) if wide else opened(path)
-        return page
-
-    return call
-
-
-def shot(page):
-    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => done()))")
-    page.evaluate("() => { vizlight.moving = false; vizlight.draw(); }")
-    return np.array(Image.open(io.BytesIO(page.screenshot())).convert("RGB"), dtype=np.int16)
-
-
-def turn(page, degrees):
-    page.evaluate(f"() => vizlight.orbit({-np.radians(degrees)}, 0)")
 
 
 def first_camera(centre=(0.0, 0.0, 0.0)):
@@ -171,10 +141,10 @@ def test_page_has_the_light_of_the_engine_before_and_after_turning(case, opened,
     pictures = []
     for degrees in (0, 60):
         camera.azimuth += degrees
-        turn(live, degrees)
-        turn(other, degrees)
+        browsers.turn(live, degrees)
+        browsers.turn(other, degrees)
         recolor(other, engine_colors(mesh, scene, camera, options, colored))
-        got, expected = shot(live), shot(other)
+        got, expected = browsers.shot(live), browsers.shot(other)
         pictures.append(got)
         error = np.abs(got - expected)
         assert expected.std() > 10
@@ -191,7 +161,7 @@ def test_colours_of_data_in_bright_light_are_those_of_tint(shown):
     bright = Material(ambient=0.4, diffuse=1.0, specular=0.5, shininess=3)
     scene = Scene(lights=Light(direction=(0.3, 0.2, 1)), material=bright)
     page = shown(mesh, scene, camera=camera, panel=False, scalars="value", cmap="turbo")
-    colors = np.unique(shot(page).reshape(-1, 3), axis=0)
+    colors = np.unique(browsers.shot(page).reshape(-1, 3), axis=0)
     seen = scene.replace(view=View.from_camera(camera))
     lit = vizlight.tint(vizlight.illuminate(mesh, seen), "value", cmap="turbo")
     expected = lit["rgb"][::4].astype(int)
@@ -231,131 +201,6 @@ def test_the_page_reads_the_numbers_that_were_packed(shown):
     assert np.abs(rows - mesh["n"]).max() < 5e-5
 
 
-def plain_page(tmp_path, **options):
-    ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
-    scene = Scene(lights=Light(direction=(1, 0.2, 0.3)), material=SHINY)
-    return vizlight.live_html(
-        ball, tmp_path / "ball.html", scene=scene, background="black", **options
-    )
-
-
-def slide(page, label, value):
-    page.get_by_label(label, exact=True).evaluate(
-        """(input, x) => {
-        input.value = x;
-        ['input', 'change'].forEach((kind) => input.dispatchEvent(new Event(kind)));
-        }""",
-        value,
-    )
-
-
-def test_panel_moves_light_and_material_and_back(opened, tmp_path):
-    page, seen = opened(plain_page(tmp_path, title="A <ball> & more"), bare=False, **WIDE)
-    assert page.title() == "A <ball> & more"
-    first = shot(page)
-    for label, value in (
-        ("Brightness", 0.3), ("Ambient", 0.6), ("Diffuse", 0.1), ("Highlight", 0), ("Sharpness", 3),
-        ("Depth fade", 0.8),
-    ):  # fmt: skip
-        slide(page, label, value)
-        page.mouse.move(5, 5)
-        assert np.abs(shot(page) - first)[:, :400].max() > 15, label
-        page.keyboard.press("Control+z")
-        np.testing.assert_array_equal(shot(page)[:, :400], first[:, :400])
-    page.keyboard.press("Control+y")
-    assert np.abs(shot(page) - first)[:, :400].max() > 15
-    page.keyboard.press("Control+z")
-    page.get_by_role("radio", name="Eye").check()
-    held = shot(page)
-    np.testing.assert_allclose(held[:880, :400], first[:880, :400], atol=2)
-    before = page.evaluate(
-        "vizlight.draw(), vizlight.lightOf(vizlight.leader, []).numbers.vizLight0"
-    )
-    turn(page, 90)
-    after = page.evaluate("vizlight.lightOf(vizlight.leader, []).numbers.vizLight0")
-    np.testing.assert_allclose(after, before)
-    with page.expect_download() as saved:
-        page.get_by_role("button", name="Save picture").click()
-    picture = np.array(Image.open(saved.value.path()).convert("RGB"), dtype=np.int16)
-    assert picture.shape[0] == WIDE["viewport"]["height"]
-    assert np.abs(picture[:, :400] - shot(page)[:, :400]).mean() < 5
-    assert seen == [(tmp_path / "ball.html").as_uri()]
-
-
-def test_the_light_of_the_sky_is_switched_off_and_on(opened, tmp_path):
-    ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
-    ball["sky"] = np.linspace(0.1, 0.7, ball.n_points)
-    scene = Scene(lights=FAR, material=shiny(ambient=0.5))
-    pages = {}
-    for name, options in (("sky", {"occlusion": "sky"}), ("open", {})):
-        command = ["a.vtp", "--occlusion=sky"] if options else ["a.vtp"]
-        path = vizlight.live_html(
-            ball, tmp_path / f"{name}.html", scene=scene, source=command, **options
-        )
-        pages[name], _ = opened(path, bare=False, **WIDE)
-    page, switch = pages["sky"], pages["sky"].get_by_label("Light of the sky in hollows")
-    assert pages["open"].get_by_label("Light of the sky in hollows").count() == 0
-    first, free = (shot(pages[name])[:, :840].astype(int) for name in ("sky", "open"))
-    assert np.abs(first - free).max() > 30
-    read = "() => Object.values(vizlight.texts()).join('')"
-    assert page.evaluate(read).count("sky") == 2 + page.evaluate(read).count("sky.")
-    switch.uncheck()
-    assert np.abs(shot(page)[:, :840] - free).max() <= 2
-    assert page.evaluate(read).count("sky") == page.evaluate(read).count("sky.")
-    page.keyboard.press("Control+z")
-    np.testing.assert_array_equal(shot(page)[:, :840], first)
-
-
-@pytest.mark.skipif(not AXE.exists(), reason="npm's axe-core is not installed")
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_nothing(scheme, opened, tmp_path):
-    mesh = torus()
-    mesh["sky"] = np.ones(mesh.n_points)
-    scene = presets.shape()
-    for width, title, frames in ((1200, "", False), (400, "A ring", True)):
-        meshes = {0.5: mesh, 1.5: torus(centre=(1, 0, 0))} if frames else mesh
-        options = {} if frames else {"scalars": "height", "occlusion": "sky"}
-        path = vizlight.live_html(meshes, tmp_path / "a.html", scene=scene, title=title, **options)
-        look = {"viewport": {"width": width, "height": 900}, "color_scheme": scheme}
-        page, _ = opened(path, bare=False, bypass_csp=True, **look)
-        page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
-        page.evaluate("document.body.classList.remove('folded')")  # as it is at first on telephones
-        page.get_by_role("button", name="Copy as Python").click()
-        for asked in ("dialog", "document"):
-            page.evaluate(AXE.read_text("utf-8"))
-            run = "axe.run().then((made) => made.violations.map((one) => one.id))"
-            assert page.evaluate(run) == [], asked
-            page.evaluate("document.querySelectorAll('dialog').forEach((one) => one.close())")
-
-
-def test_lamps_are_dragged_over_the_ball_and_past_its_rim(opened, tmp_path):
-    page, _ = opened(plain_page(tmp_path), bare=False, **WIDE)
-    box = page.locator(".pad").bounding_box()
-    middle = np.array([box["x"] + box["width"] / 2, box["y"] + box["height"] / 2])
-    read = "vizlight.seen(vizlight.lamps[0], [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1])"
-    page.get_by_role("radio", name="Eye").check()
-    first = shot(page)
-    page.mouse.move(*middle)
-    page.mouse.down()
-    for share, expected in ((0.95, -0.5), (0.0, 1.0), (0.5, None)):
-        page.mouse.move(*(middle - (share * box["width"] / 2, 0)))
-        x, y, z = page.evaluate(read)
-        assert x <= 0.02
-        assert abs(y) < 0.02
-        assert expected is None or z * expected > 0.4
-    page.mouse.up()
-    assert np.abs(shot(page) - first)[:, :400].max() > 20
-    assert page.evaluate("vizlight.state.look") == "*"
-    page.locator(".lamp").focus()
-    page.keyboard.press("ArrowRight")
-    assert page.evaluate(read)[0] > x
-    page.get_by_label("Add a lamp").click()
-    assert page.locator(".lamp").count() == 2
-    page.get_by_label("Remove the lamp").click()
-    page.get_by_label("Remove the lamp").click()
-    assert shot(page)[:, :400].min() >= 0
-
-
 @pytest.mark.parametrize("question", ["direction", "slope", "heading", "shape"])
 def test_light_by_question_is_that_of_the_preset(question, shown):
     mesh, camera = torus(), first_camera()
@@ -364,7 +209,7 @@ def test_light_by_question_is_that_of_the_preset(question, shown):
     how["conditioned"] = True
     page = shown(mesh, Scene(lights=FAR), camera=camera, **how)
     page.evaluate("(name) => vizlight.look(name)", question)
-    np.testing.assert_allclose(shot(page), shot(expected), atol=1)
+    np.testing.assert_allclose(browsers.shot(page), browsers.shot(expected), atol=1)
     assert page.evaluate("vizlight.page.looks")[question]["key"] == list(QUESTIONS[question].words)
 
 
@@ -395,51 +240,17 @@ def test_questions_that_the_data_cannot_answer_are_not_offered(tmp_path):
         assert list(scene_in(path)[2]["looks"]) == expected
 
 
-def test_the_panel_is_folded_on_a_telephone_at_first(opened, tmp_path):
-    page, _ = opened(plain_page(tmp_path), bare=False, viewport={"width": 390, "height": 800})
-    assert page.evaluate("vizlight.canvas.clientHeight") > 700
-    page.get_by_label("Show or hide the panel (H)").click()
-    assert page.get_by_role("button", name="Save picture").is_visible()
-
-
 def test_arrays_colour_the_mesh_as_in_the_plotter(shown):
     mesh, scene = torus(), presets.value()
     options = {"camera": first_camera(), "normals": "n"}
     expected = shown(mesh, scene, scalars="height", cmap="viridis", **options)
     page = shown(mesh, scene, **options)
     page.evaluate("() => vizlight.change({ color: 'height', cmap: 'viridis' })")
-    error = np.abs(shot(page) - shot(expected))
+    error = np.abs(browsers.shot(page) - browsers.shot(expected))
     assert error.mean() < 0.5
     assert np.quantile(error, 0.99) <= 3
     page.evaluate("() => vizlight.change({ color: 'height', cmap: 'plasma' })")
-    assert np.abs(shot(page) - shot(expected)).max() > 40
-
-
-def test_a_slider_shows_one_of_the_frames(shown):
-    frames = {level: pv.Sphere(radius=level) for level in (0.5, 1.0, 2.0)}
-    scene = Scene(lights=FAR, view=View(direction=(1, 0, 0)))
-    page = shown(frames, scene, frames="level in m", wide=True)
-    counts = []
-    for i in range(3):
-        slide(page, "level in m", i)
-        counts.append(int((shot(page)[:, :600].max(axis=2) > 40).sum()))
-    assert counts[0] > 0
-    assert counts[1] > 3 * counts[0]
-    assert counts[2] > 3 * counts[1]
-    page.keyboard.press("Control+z")
-    assert page.evaluate("vizlight.state.frame") == 1
-
-
-def test_a_cut_leaves_one_side(opened, tmp_path):
-    camera = vizlight.render.camera_on(pv.Sphere(), (0, 0, 1), parallel=True)
-    page, _ = opened(plain_page(tmp_path, camera=camera))
-    page.evaluate("() => vizlight.change({ cut: { axis: 0, at: 0.5, far: false } })")
-    seen = shot(page).max(axis=2) > 0
-    middle = SIZE["width"] // 2
-    assert seen[:, : middle - 1].sum() > 1000
-    assert not seen[:, middle + 2 :].any()
-    page.evaluate("() => vizlight.change({ cut: { axis: 0, at: 0.5, far: true } })")
-    assert not (shot(page).max(axis=2) > 0)[:, : middle - 2].any()
+    assert np.abs(browsers.shot(page) - browsers.shot(expected)).max() > 40
 
 
 def test_a_page_starts_at_the_view_of_its_scene(tmp_path):
@@ -455,134 +266,8 @@ def test_a_page_starts_at_the_view_of_its_scene(tmp_path):
             assert cosine > 0.9999
 
 
-def test_loops_of_the_mouse_leave_no_tilt(opened, tmp_path):
-    eye = pv.Camera()
-    # Upright to the axis of the view, as some programs write it.
-    eye.position, eye.focal_point, eye.up = (0.5, -3, 3), (0.5, 0, 0), (0, 1, 1)
-    page, _ = opened(plain_page(tmp_path, camera=eye))
-    first = page.evaluate("vizlight.state.camera")
-    assert first["up"] == [0, 0, 1]
-    for _ in range(4):
-        for step in ("0.4, 0", "0, 0.3", "-0.4, 0", "0, -0.3"):
-            page.evaluate(f"vizlight.orbit({step})")
-    last = page.evaluate("vizlight.state.camera")
-    np.testing.assert_allclose(last["position"], first["position"], atol=1e-9)
-    assert last["up"] == first["up"]
-    # No drag passes the pole, beyond which the horizon would be upside down.
-    page.evaluate("vizlight.orbit(0, 9)")
-    x, y, z = page.evaluate("vizlight.state.camera.position")
-    assert z > 20 * np.hypot(x, y)
-
-
-def halves(picture):
-    """Return the first column in which the colours of the right are, and those of both sides."""
-    row = picture[len(picture) // 4].astype(int)
-    apart = np.abs(row - row[0]).max(axis=1) > 60
-    return int(np.argmax(apart)), row[0], row[-1]
-
-
-def test_a_divider_parts_two_frames(opened, tmp_path):
-    plotter = pv.Plotter(off_screen=True, window_size=(300, 250))
-    even = Scene(lights=[], material=Material(ambient=1, diffuse=0, specular=0))
-    for color in ("red", "blue"):
-        plotter.vizlight.add_mesh(pv.Plane(i_size=4, j_size=4), scene=even, color=color)
-    plotter.view_xy()
-    plotter.camera.zoom(4)
-    shown = [mesh._replace(frame=i) for i, mesh in enumerate(plotter.vizlight.shown())]
-    names = ("Red | blue", ("Red", "blue"))
-    path = html.write_page(tmp_path / "split.html", shown, plotter, frames=names)
-    page, seen = opened(path, bare=False)
-    still = re.search(r'id="picture"[^>]*base64,([^"]+)', path.read_text("utf-8"))[1]
-    for picture in (np.array(Image.open(io.BytesIO(base64.b64decode(still)))), shot(page)):
-        middle, left, right = halves(picture)
-        assert abs(middle - 150) < 4
-        assert left[0] > left[2] + 200
-        assert right[2] > right[0] + 200
-    line = page.get_by_role("slider", name="Red | blue")
-    assert line.get_attribute("aria-valuetext") == "50 % Red"
-    line.focus()
-    page.keyboard.press("ArrowLeft")
-    assert abs(halves(shot(page))[0] - 147) < 4
-    page.mouse.move(147, 60)
-    page.mouse.down()
-    page.mouse.move(60, 60)
-    page.mouse.up()
-    assert abs(halves(shot(page))[0] - 60) < 4
-    before = page.evaluate("vizlight.state.camera.position")
-    page.mouse.move(200, 200)
-    page.mouse.down()
-    page.mouse.move(230, 200)
-    page.mouse.up()
-    assert page.evaluate("vizlight.state.camera.position") != before
-    assert page.locator("#panel").count() == 0
-    assert seen == [path.as_uri()]
-
-
-def test_keys_and_fingers_turn_the_page(opened, tmp_path):
-    page, _ = opened(plain_page(tmp_path), has_touch=True)
-    where = """() => {
-        const { position, focal } = vizlight.state.camera;
-        return [position, Math.hypot(...position.map((x, i) => x - focal[i]))];
-    }"""
-    first, far = page.evaluate(where)
-    page.keyboard.press("Tab")
-    page.keyboard.press("ArrowLeft")
-    turned, same = page.evaluate(where)
-    assert np.linalg.norm(np.subtract(turned, first)) > 0.02 * far
-    assert same == pytest.approx(far)
-    page.keyboard.press("+")
-    assert page.evaluate(where)[1] == pytest.approx(far / 1.1)
-    page.keyboard.press("r")
-    assert page.evaluate(where)[0] == pytest.approx(first)
-    wire = page.context.new_cdp_session(page)
-
-    def touch(kind, *points):
-        rows = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]
-        wire.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": rows})
-
-    touch("touchStart", (100, 150))
-    for i in range(10):
-        touch("touchMove", (100 + 8 * i, 150))
-    touch("touchEnd")
-    turned, same = page.evaluate(where)
-    assert np.linalg.norm(np.subtract(turned, first)) > 0.1 * far
-    assert same == pytest.approx(far)
-    touch("touchStart", (150, 150), (200, 150))
-    for i in range(10):
-        touch("touchMove", (150 - 5 * i, 150), (200 + 5 * i, 150))
-    touch("touchEnd")
-    assert page.evaluate(where)[1] < 0.8 * far
-
-
-def test_several_meshes_can_be_switched_off_each(shown):
-    both = pv.MultiBlock({"ball": pv.Sphere(), "ring": torus().translate((0, 0, 1))})
-    page = shown(both, Scene(lights=FAR, material=SHINY), wide=True)
-    every = shot(page)[60:880, :840]
-    for name in ("ball", "ring"):
-        page.get_by_role("checkbox", name=name).uncheck()
-        seen = shot(page)[60:880, :840]
-        assert np.abs(seen - every).max() > 30
-    assert seen.max() == 0
-
-
-def test_many_meshes_stand_in_a_closed_list_after_the_sliders(shown):
-    many = pv.MultiBlock({f"ball {i}": pv.Sphere(radius=0.1, center=(i, 0, 0)) for i in range(12)})
-    page = shown(many, Scene(lights=FAR, material=SHINY), wide=True)
-    meshes = page.locator("details", has_text="Meshes (12)")
-    assert not meshes.evaluate("(list) => list.open")
-    meshes.locator("summary").focus()
-    page.keyboard.press("Enter")
-    page.get_by_label("ball 7", exact=True).uncheck()
-    every = page.get_by_label("All", exact=True)
-    assert every.evaluate("(box) => box.indeterminate")
-    every.check()
-    assert shot(page)[60:880, :840].max() > 30
-    every.uncheck()
-    assert shot(page)[60:880, :840].max() == 0
-
-
 def test_page_without_webgl_shows_the_picture_and_says_so(chromium, tmp_path):
-    path = plain_page(tmp_path)
+    path = browsers.plain_page(tmp_path)
     bare = chromium.launch(
         executable_path=browsers.CHROMIUM, args=["--no-sandbox", "--disable-3d-apis"]
     )
@@ -606,12 +291,12 @@ def test_a_background_that_nobody_chose_is_dark_on_dark_pages_but_not_on_paper(o
             {"color_scheme": "dark", "media": "print"},
         ):  # fmt: skip
             page.emulate_media(**media)
-            seen.append(int(shot(page)[3, 3, 0]))
+            seen.append(int(browsers.shot(page)[3, 3, 0]))
         assert seen == corners
 
 
 def test_two_files_serve_a_strict_policy(browser, tmp_path):
-    path = plain_page(tmp_path, files=2)
+    path = browsers.plain_page(tmp_path, files=2)
     assert (tmp_path / "viewer.js").read_text("utf-8") == html.viewer()
     assert "<script>" not in path.read_text("utf-8")
 
@@ -634,7 +319,7 @@ def test_two_files_serve_a_strict_policy(browser, tmp_path):
         page.goto(f"http://127.0.0.1:{server.server_port}/ball.html")
         page.wait_for_selector("body[data-ready]")
         assert page.evaluate("getComputedStyle(document.getElementById('panel')).display") == "flex"
-        assert shot(page).std() > 10
+        assert browsers.shot(page).std() > 10
         page.close()
         server.shutdown()
         thread.join()
@@ -744,7 +429,7 @@ def test_what_is_not_data_is_grey_and_has_a_name(opened, tmp_path):
         tangents="V", scalars="height", panel=False,
     )  # fmt: skip
     page, _ = opened(path)
-    picture = shot(page)
+    picture = browsers.shot(page)
     np.testing.assert_array_equal(picture[80:170, 165:240], 128)
     missing, known = picture[30:100, 40:140], picture[160:220, 40:140]
     assert np.ptp(missing, axis=2).max() == 0
@@ -793,7 +478,7 @@ def test_lines_of_a_page_have_the_halos_and_widths_of_the_picture(opened, tmp_pa
     plotter.close()
     page, _ = opened(path)
     # The gaps of the halo are 0.7 % of the picture.
-    assert np.mean(np.abs(shot(page) - expected).max(axis=2) > 60) < 0.003
+    assert np.mean(np.abs(browsers.shot(page) - expected).max(axis=2) > 60) < 0.003
 
 
 def test_strokes_behind_the_border_of_their_surface_do_not_stand_out(opened, tmp_path):
@@ -808,9 +493,9 @@ def test_strokes_behind_the_border_of_their_surface_do_not_stand_out(opened, tmp
     plotter.vizlight.add_mesh(lines, scene=even, **thick)
     plotter.view_vector((1, 0.2, 0.6))
     page, _ = opened(plotter.vizlight.export_html(tmp_path / "strokes.html", key=False))
-    drawn = shot(page)
+    drawn = browsers.shot(page)
     page.evaluate("vizlight.change({ hidden: ['mesh 2'] })")
-    bare = shot(page)
+    bare = browsers.shot(page)
     outside = (bare == (255, 0, 0)).all(axis=2)
     assert (np.abs(drawn - bare).max(axis=2) > 100).sum() > 1500
     assert not (np.abs(drawn - bare).max(axis=2) > 100)[outside].any()
@@ -839,9 +524,9 @@ def test_strokes_of_a_page_move_as_those_of_a_movie(opened, tmp_path):
     for share, own, other in zip(shares, movie, movie[::-1], strict=True):
         page.evaluate(f"() => {{ vizlight.meshes[0].move({share}); vizlight.draw(); }}")
         # The borders are smooth.
-        assert len(np.unique(shot(page)[90:160])) > 3
+        assert len(np.unique(browsers.shot(page)[90:160])) > 3
         # The button is above the strokes. Borders differ by their smoothing, a fifth of the ink.
-        seen = shot(page)[90:160]
+        seen = browsers.shot(page)[90:160]
         apart, moved = (np.mean(np.abs(seen - each[90:160]) > 60) for each in (own, other))
         assert apart < 0.015
         assert moved > 4 * apart

@@ -57,10 +57,11 @@ def test_points_deep_inside_are_darker_and_the_outermost_are_not():
     assert lit["sky"][radius < 0.2].mean() < 0.6 * lit["sky"][radius > 0.8].mean()
 
 
-def test_the_reference_of_a_report_takes_the_shares_too():
+def test_the_reference_of_a_check_takes_the_shares_too():
     red = shiny(color=(1.0, 0.3, 0.2))
-    with vizlight.report(sample=60) as report:
-        vizlight.illuminate(lines(100), SCENE.replace(material=red), bundle=QUICK, occlusion="sky")
+    scene = SCENE.replace(material=red)
+    lit = vizlight.illuminate(lines(100), scene, bundle=QUICK, occlusion="sky")
+    report = vizlight.check(lit, sample=60)
     assert report.error < 2e-6
     assert report.runs[0].sample == 60
 

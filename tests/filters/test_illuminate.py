@@ -224,9 +224,9 @@ def test_faces_lines_and_vertices_of_one_mesh_are_lit_as_such(as_grid, seen):
     mesh = mixed.cast_to_unstructured_grid() if as_grid else mixed
     # The first point of the lines is the faces' too.
     own = np.arange(faces.n_points - 1, faces.n_points - 1 + lines.n_points)
-    with vizlight.report(sample=500) as report:
-        light = illuminate(mesh, scene)["luminance"]
-    assert report.error < 1e-6
+    lit = illuminate(mesh, scene)
+    light = lit["luminance"]
+    assert vizlight.check(lit, sample=500).error < 1e-6
     expected = illuminate(faces, scene)["luminance"]
     np.testing.assert_allclose(light[: faces.n_points], expected, atol=1e-6)
     np.testing.assert_allclose(light[own[1:]], illuminate(lines, scene)["luminance"][1:], atol=1e-6)

@@ -444,6 +444,28 @@ def test_a_shadow_is_cast_once_for_a_field_and_its_picture(monkeypatch):
         relight.from_record(shadowed)
 
 
+@pytest.mark.parametrize("kind", ["field", "ball"])
+def test_shadows_of_several_lights_are_kept_with_their_components(kind, monkeypatch):
+    mesh = pv.Sphere()
+    if kind == "field":
+        mesh = pv.ImageData(dimensions=(12, 12, 1))
+        mesh["height"] = 2 * np.sin(np.arange(144.0))
+    lights = [Light(direction=(1, 0, 1)), Light(direction=(0, 1, 1), intensity=0.5)]
+    lit = relief_shadow(mesh, Scene(lights=lights), lit=True, components=True)
+    moved = lit.translate((1.0, 0, 0)) if kind == "ball" else lit.copy()
+    moved["t_0"] = np.array(moved["t_0"]) if kind == "ball" else 0.5 * moved["t_0"]
+    cast = []
+    ratios = Shadows.ratios
+    monkeypatch.setattr(
+        Shadows, "ratios", lambda *args, **how: cast.append(1) or ratios(*args, **how)
+    )
+    (source,), _ = relight.from_record(lit)
+    np.testing.assert_array_equal(source.inputs.shadow, np.stack([lit["t_0"], lit["t_1"]], axis=1))
+    assert not cast
+    relight.from_record(moved)
+    assert cast
+
+
 def lit_on_a_sphere(longitudes, latitudes, heights, azimuth, altitude):
     """Return t at depth 0 by rays in geocentric coordinates, through ground that is bilinear."""
     radius = georeference.METRES * 180 / np.pi

@@ -63,18 +63,16 @@ def test_kinds_of_height_fields_agree():
 
 
 def test_more_error_than_requested_is_said(monkeypatch):
-    """Both figures, in a warning, the record and the report."""
+    """Both figures, in a warning, the record and the check."""
     monkeypatch.setattr(fields, "MOST", fields.FEWEST)
     rough = pv.ImageData(dimensions=(20, 20, 1))
     rough["height"] = np.random.default_rng(0).normal(size=400)
-    with (
-        pytest.warns(UserWarning, match=r"error of the sky is 0\.\d+ .* error=0.001 was requested"),
-        vizlight.report() as told,
-    ):
+    words = r"error of the sky is 0\.\d+ .* error=0.001 was requested"
+    with pytest.warns(UserWarning, match=words):
         found = vizlight.sky(rough, error=0.001)
     record = vizlight.provenance(found, "sky")
     assert record["error"] > record["requested"] == 0.001
-    assert "(0.001 was requested)" in str(told)
+    assert "(0.001 was requested)" in str(vizlight.check(found, name="sky"))
 
 
 def test_a_curvilinear_grid_is_below_the_sky_of_a_field():
@@ -228,16 +226,17 @@ def test_a_sky_that_is_older_than_the_mesh_is_told():
     vizlight.illuminate(named, SCENE, occlusion="view", feature_angle="auto")
 
 
-def test_the_report_tells_the_errors_and_the_time():
-    with vizlight.report() as report:
-        vizlight.sky(pv.MultiBlock([valley(), *balls()]), error=0.05)
-    lines = str(report).splitlines()
-    assert lines[0].startswith("1341 points see the sky; ")
-    assert [line.partition("; ")[0].partition(",")[0] for line in lines[1:]] == [
-        f"  error {vizlight.provenance(one, 'sky')['error']:.2g} or less at 95 of 100 points"
-        for one in vizlight.sky(pv.MultiBlock([valley(), *balls()]), error=0.05)
+def test_a_check_states_the_errors():
+    skylit = vizlight.sky(pv.MultiBlock([valley(), *balls()]), error=0.05)
+    lines = str(vizlight.check(skylit, name="sky")).splitlines()
+    assert [line.partition(",")[0] for line in lines] == [
+        f"sky of {block.n_points} points: error {vizlight.provenance(block, 'sky')['error']:.2g} "
+        "or less at 95 of 100 points"
+        for block in skylit
     ]
-    assert [";" in line for line in lines[1:]] == [False, True, True]
+    assert [";" in line for line in lines] == [False, True, True]
+    lit = vizlight.illuminate(skylit, SCENE, occlusion="sky")
+    assert str(vizlight.check(lit, sample=9)).splitlines()[:3] == lines
 
 
 def test_lines_have_a_default_of_their_own():
@@ -267,9 +266,8 @@ def test_it_multiplies_the_ambient_term_alone(fast, color, monkeypatch):
     monkeypatch.setenv("VIZLIGHT_FAST", fast if not _compiled._missing() else "0")
     scene = SCENE.replace(material=vizlight.Material(ambient=0.5, diffuse=0.4, color=color))
     plain = vizlight.illuminate(both(), scene, components=True)
-    with vizlight.report(sample=40) as report:
-        lit = vizlight.illuminate(both(), scene, components=True, occlusion="sky")
-    assert report.error < 2e-6
+    lit = vizlight.illuminate(both(), scene, components=True, occlusion="sky")
+    assert vizlight.check(lit, sample=40).error < 2e-6
     np.testing.assert_allclose(lit["ambient"], lit["sky"] * plain["ambient"], atol=1e-6)
     np.testing.assert_allclose(lit["diffuse"], plain["diffuse"], atol=1e-6)
     darker = plain["luminance"] - (1 - lit["sky"]) * plain["ambient"]

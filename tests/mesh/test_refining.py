@@ -506,12 +506,10 @@ def test_a_flow_that_reverses_in_a_triangle_is_interpolated_as_vtk_does():
     share, largest = np.mean(off > PIXEL), off.max()
     assert share > 0.1
     assert largest > 0.3
-    with vizlight.report() as found:
-        illuminate(mesh, SCENE, tangents="flow")
+    found = vizlight.check(illuminate(mesh, SCENE, tangents="flow"))
     assert found.runs[0].visible == pytest.approx(share, abs=0.02)
     assert found.runs[0].between == pytest.approx(largest, rel=0.1)
-    with vizlight.report() as found:
-        illuminate(mesh, SCENE, tangents="flow", line_field=True)
+    found = vizlight.check(illuminate(mesh, SCENE, tangents="flow", line_field=True))
     assert found.runs[0].between < largest / 5
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)

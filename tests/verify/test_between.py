@@ -10,11 +10,11 @@ from vectors import unit
 
 import vizlight
 from vizlight import Light, Material, Scene, View, engine, illuminate, refine
+from vizlight.observers.check import Run, unseen
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
 from vizlight.verify import between
 from vizlight.verify.between import Between, Places
-from vizlight.verify.report import Run, unseen
 
 LIGHT, EYE = np.array([0.7, 0.6, 0.38]), np.array([0.1, 0.3, 0.9])
 SCENE = Scene(lights=Light(direction=LIGHT), view=View(direction=EYE), material=SHINY)
@@ -28,15 +28,10 @@ def ball():
     return mesh
 
 
-def report_of(work, **options):
-    with vizlight.report(**options) as found:
-        work()
-    return found
-
-
 def test_the_error_is_that_of_many_places(ball):
     """Against the textbook's formula at 200 thousand places, drawn and weighted by other means."""
-    (run,) = report_of(lambda: illuminate(ball, SCENE, normals="normal")).runs
+    lit = illuminate(ball, SCENE, normals="normal")
+    (run,) = vizlight.check(lit).runs
     random = np.random.default_rng(5)
     faces = ball.regular_faces
     size = ball.compute_cell_sizes(length=False, volume=False)["Area"]
@@ -48,7 +43,7 @@ def test_the_error_is_that_of_many_places(ball):
     cosine = n @ wi
     mirror = np.maximum((2 * cosine[:, None] * n - wi) @ wo, 0) * (cosine > 0)
     true = 0.1 + 0.5 * np.maximum(cosine, 0) + 0.4 * mirror**20
-    light = illuminate(ball, SCENE, normals="normal")["luminance"]
+    light = lit["luminance"]
     off = np.abs(true - np.einsum("mc,mc->m", weights, light[chosen]))
     assert run.places == 4096
     assert run.between_rms == pytest.approx(np.sqrt(np.mean(off * off)), rel=0.05)
@@ -58,14 +53,15 @@ def test_the_error_is_that_of_many_places(ball):
 
 
 def test_words(ball):
-    said = str(report_of(lambda: illuminate(ball, SCENE, normals="normal")))
+    lit = illuminate(ball, SCENE, normals="normal")
+    said = str(vizlight.check(lit))
     assert "rounding error" in said
     assert "all 1522 points computed again one by one in float64" in said
     assert "at 4096 random places; 95 %: fewer than 0.08 % of the places are worse" in said
     assert "are off by more than 1/255; vizlight.refine to 1/255 leaves only places where" in said
-    fine = str(report_of(lambda: refine(ball, SCENE, normals="normal")))
+    fine = str(vizlight.check(refine(ball, SCENE, normals="normal")))
     assert "vizlight.refine" not in fine
-    part = str(report_of(lambda: illuminate(ball, SCENE, normals="normal"), sample=100))
+    part = str(vizlight.check(lit, sample=100))
     assert "100 points computed again" in part
     assert "95 %: fewer than 3 % of the points are worse" in part
 
@@ -87,8 +83,9 @@ def test_a_fault_in_one_of_a_thousand_points_is_found(monkeypatch):
         output.luminance[rows][7::1000] += 0.01
 
     monkeypatch.setattr(engine, "shade_block", wrong)
+    lit = illuminate(mesh, SCENE)
     for seed in range(3):
-        found = report_of(lambda: illuminate(mesh, SCENE), seed=seed)
+        found = vizlight.check(lit, seed=seed)
         assert found.error == pytest.approx(0.01, rel=1e-3)
     run = found.runs[0]
     assert (run.sample, run.missed) == (4096, unseen(4096))
@@ -98,15 +95,14 @@ def test_lines_surfaces_and_volumes_have_an_error_and_clouds_have_none():
     flow = vizlight.load_example()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
-        runs = report_of(
-            lambda: [
-                vizlight.streamlines(flow, SCENE, tangents="V", seeds=5),
-                illuminate(flow.contour([600.0], scalars="Temp"), SCENE, tangents="V"),
-                illuminate(flow, SCENE),
-                illuminate(pv.PolyData(np.eye(3)), SCENE, tangents=np.eye(3)),
-                vizlight.fur(pv.Sphere(), SCENE, density=0.3, fibres=20),
-            ]
-        ).runs
+        meshes = [
+            vizlight.streamlines(flow, SCENE, tangents="V", seeds=5),
+            illuminate(flow.contour([600.0], scalars="Temp"), SCENE, tangents="V"),
+            illuminate(flow, SCENE),
+            illuminate(pv.PolyData(np.eye(3)), SCENE, tangents=np.eye(3)),
+            vizlight.fur(pv.Sphere(), SCENE, density=0.3, fibres=20),
+        ]
+        runs = [run for mesh in meshes for run in vizlight.check(mesh).runs]
     assert [run.places for run in runs] == [4096, 4096, 4096, 0, 0, 0]
     assert all(0 < run.between < 1 for run in runs[:3])
     assert np.isnan(runs[3].between)
@@ -117,28 +113,27 @@ def test_lines_surfaces_and_volumes_have_an_error_and_clouds_have_none():
 
 def test_what_is_not_measured_is_named():
     scene = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(0, 0, 1)), material=SHINY)
-    told = report_of(lambda: vizlight.relief_shadow(pv.Sphere(), scene, lit=True))
+    report = vizlight.check(vizlight.relief_shadow(pv.Sphere(), scene, lit=True))
     words = "not measured between points: cast shadows"
-    assert str(told).count(words) == len(told.runs) == 2
+    assert str(report).count(words) == len(report.runs) == 2
     ball = pv.Sphere()
-    pair = np.concatenate([ball.points, np.roll(ball.points, 1, axis=1)], axis=1)
-    told = report_of(lambda: illuminate(ball, scene, tangents=pair))
-    assert told.runs[0].places
-    assert "not measured between points: the peaks of highlights" in str(told)
+    ball["pair"] = np.concatenate([ball.points, np.roll(ball.points, 1, axis=1)], axis=1)
+    report = vizlight.check(illuminate(ball, scene, tangents="pair"))
+    assert report.runs[0].places
+    assert "not measured between points: the peaks of highlights" in str(report)
     dull = scene.replace(material=shiny(specular=0))
     between = "not measured between points"
-    assert between not in str(report_of(lambda: illuminate(ball, dull, tangents=pair)))
-    told = str(report_of(lambda: illuminate(ball, scene)))
-    assert between not in told
-    assert told.endswith("not measured: what a reader can read back, see vizlight.legibility")
+    assert between not in str(vizlight.check(illuminate(ball, dull, tangents="pair")))
+    words = str(vizlight.check(illuminate(ball, scene)))
+    assert between not in words
+    assert words.endswith("not measured: what a reader can read back, see vizlight.legibility")
 
 
 def test_no_sample_no_places(ball):
-    found = report_of(lambda: illuminate(ball, SCENE), sample=0)
+    found = vizlight.check(illuminate(ball, SCENE), sample=0)
     assert found.runs[0].places == 0
     assert np.isnan(found.between)
-    empty = Run(points=0, terms=(), precision="float32", seconds=0, bytes=0, sample=0, error=0,
-                rms=0, invalid=0)  # fmt: skip
+    empty = Run(points=0, terms=(), precision="float32", bytes=0, invalid=0)
     assert empty.missed == 0
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import gc
 import warnings
@@ -17,6 +16,7 @@ from vizlight._words import message
 from vizlight.cli.output import OK, complain, draw, one_line, say
 from vizlight.cli.scenes import times
 from vizlight.looks.steps import Step, in_order, source, written
+from vizlight.shading.results import DEFAULT_NAME
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -87,7 +87,7 @@ class Command:
         for twice in (name for name in stems if not joined and stems.count(name) > 1):
             expected = "files of different names, after which the outputs are named"
             raise ValueError(message("file", expected, f"{twice!r} twice"))
-        scripts: list[tuple[Look, list[Step]]] = []
+        scripts: list[list[Step]] = []
         codes = [OK]
         for group in groups:
             try:
@@ -97,7 +97,8 @@ class Command:
                     outputs = _outputs(look, f"{group[0].stem}-{ending}", out, paths)
                     if out.script:
                         last = [step for steps in outputs for step in steps]
-                        scripts.append((look, [*(look.read_steps() if self.read else []), *last]))
+                        read = look.read_steps() if self.read else []
+                        scripts.append([*(_checks(look) if out.report else []), *read, *last])
                     else:
                         codes.append(self._run(look, outputs))
             except (TypeError, ValueError, OSError) as error:
@@ -107,9 +108,7 @@ class Command:
                 complain(f"{group[0]}: {one_line(error)}")
                 codes.append(BAD_INPUT)
         if scripts:
-            reported = [look.drawing.lit for look, _ in scripts] if out.report else []
-            jobs = [[*([look.drawing.lit] if out.report else []), *last] for look, last in scripts]
-            say(source(jobs, reported=reported))
+            say(source(scripts))
         return max(codes)
 
     def _look(self, paths: Sequence[Path], time: float | str | None) -> Look:
@@ -147,10 +146,9 @@ class Command:
             codes.append(draw(functools.partial(written, steps), kind))
         # Last, so that an error is the only word on a step that failed.
         say(f"shown    {look.summary}")
-        # A movie of all steps has no step of its own to tell.
-        in_time = any(steps[-1].path == "film.save" for steps in outputs)
+        of_one_step = {steps[-1].note for steps in outputs if steps[-1].path == "film.save"}
         for note in dict.fromkeys(look.notes):
-            if not (in_time and note.startswith("time ")):
+            if note not in of_one_step:
                 say(f"note     {one_line(note)}")
         if look.others:
             say(f"ask      {'; '.join(other.shell for other in look.others)}")
@@ -166,8 +164,7 @@ class Command:
             if isinstance(value, Step):
                 value.run()
         start = perf_counter()
-        measured = vizlight.report() if self.out.report else contextlib.nullcontext()
-        with warnings.catch_warnings(record=True) as caught, measured as cost:
+        with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", UserWarning)
             lit = step.run()
         seconds = perf_counter() - start
@@ -175,13 +172,26 @@ class Command:
             say(text)
         for warning in caught:
             complain(one_line(warning.message))
-        name = str(step.keywords.get("name", look.drawing.name))
+        name = _name(look)
         record = vizlight.provenance(lit, name)
         terms = " + ".join(record.get("terms", [name]))
         points = sum(block.n_points for block in all_blocks(lit))
         say(f"{points} points lit in {seconds:.3f} s, {record['precision']}: {terms}")
-        if cost is not None:
-            say(str(cost))
+        if self.out.report:
+            say(str(vizlight.check(lit, name=name)))
+
+
+def _name(look: Look) -> str:
+    """Return the name of the light of a look."""
+    return str(look.drawing.lit.keywords.get("name", look.drawing.name))
+
+
+def _checks(look: Look) -> list[Step]:
+    """Return the steps that print the cost and the error of the light of a look."""
+    name = _name(look)
+    named = {} if name == DEFAULT_NAME else {"name": name}
+    lit = look.drawing.lit
+    return [lit, Step("", "print", Step("", "vizlight.check", lit, **named))]
 
 
 def _check_output(out: Output, *, several: bool) -> None:

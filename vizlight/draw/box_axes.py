@@ -10,6 +10,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw.cameras import footprint
+from vizlight.draw.map_frames import rectangle
 from vizlight.draw.ticks import even_numbers, round_length
 from vizlight.mesh import blocks
 from vizlight.vtk import letters
@@ -170,9 +171,8 @@ def _around(
         long, word = length / letter, f"{length:g} {unit}"
         start = -(long + 2 * GAP + letters.width(word)) / 2
         words.append((word, start + long + 2 * GAP + letters.width(word) / 2, below))
-        low, high = below - THICK / 2, below + THICK / 2
-        bar = np.array([[start, low], [start + long, low], [start + long, high], [start, high]])
-        parts.append((_facing(middle, bar * size, eye), np.array([[0, 1, 2], [0, 2, 3]])))
+        bar, ids = rectangle(start, start + long, below - THICK / 2, below + THICK / 2)
+        parts.append((_facing(middle, bar * size, eye), ids))
     parts += [_written(word, middle, np.array([x, y]), eye, size) for word, x, y in words]
     return parts
 

@@ -30,14 +30,14 @@ from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
 from vizlight.draw.strokes import DEPTH
 from vizlight.files import check_output, replace_file
 from vizlight.filters import relight
-from vizlight.filters.key import annotated, preset_of
+from vizlight.filters.key import annotated
 from vizlight.mesh import blocks, records, strokes
 from vizlight.mesh.polylines import backdrop
 from vizlight.model import kernels
 from vizlight.scene import DepthCue, Light, Scene, View
 from vizlight.scene.conversion import lights_of
 from vizlight.scene.light import WHITE
-from vizlight.scene.presets import PRESETS, optional_scene
+from vizlight.scene.presets import PRESETS, optional_scene, preset_of
 from vizlight.shading.display import NO_DATA_NAME, numerals
 from vizlight.shading.plan import decide
 from vizlight.shading.results import DEFAULT_NAME
@@ -240,7 +240,7 @@ class Page:
             "specularColor": list(prop.GetSpecularColor()),
         }
         field = live.source.field
-        if not isinstance(field, str):
+        if field is not None:
             entry["field"] = self._field(field, matrix)
         if scene.exposure is not None:
             entry["exposure"] = scene.exposure
@@ -298,7 +298,7 @@ class Page:
             lit = scene.replace(lights=lamps, material=whole, depth_cue=cue if ended else None)
             plan, source = _plan(lit, sources[free]), sources[free]
             uniforms = glsl.numbers(lit, lamps, fur=plan.fur, tallest=live.tallest, data=data)
-            if not isinstance(source.field, str):
+            if source.field is not None:
                 uniforms += ground.numbers(source.field, np.eye(4))
             if plan.occluded:
                 uniforms.append(glsl.Uniform("vizSky", "float", (1.0,)))

@@ -539,8 +539,8 @@ def unfit(
     inputs, options = source.inputs, source.options
     layout = inputs.layout
     if layout.shadowed and cast:
-        if isinstance(source.field, str):
-            return f"t of the cos-theta shadow is known at the points: {source.field}"
+        if source.field is None:
+            return f"t of the cos-theta shadow is known at the points: {source.uncast}"
         layout = layout._replace(shadowed=False)
     alone = layout._replace(normals=False, dimmed=False, occluded=False) == Layout(k=1)
     # A round line has the normals of a cylinder, made in the shader: there is no room for others.
@@ -699,7 +699,7 @@ class Fragments(Live):
         """Give an actor the material of the scene, as far as VTK can have it."""
         prop = actor.GetProperty()
         prop.SetInterpolationToPhong()
-        if not isinstance(self.source.field, str) and prop.GetTexture(glsl.HEIGHTS) is None:
+        if self.source.field is not None and prop.GetTexture(glsl.HEIGHTS) is None:
             ground.attach(actor, self.source.field)
         if self.scene is None:
             return
@@ -731,7 +731,7 @@ class Fragments(Live):
         # VTK has a specular colour only where it has lights of its own.
         shown = prop.GetAmbient(), prop.GetDiffuse(), prop.GetSpecularColor()
         numbers = glsl.numbers(scene, lights, *shown, fur=plan.fur, tallest=self.tallest, data=data)
-        if not isinstance(self.source.field, str):
+        if self.source.field is not None:
             numbers += ground.numbers(self.source.field, np.reshape(_elements(actor), (4, 4)))
         if renew:
             turned = self.source.sided is not None

@@ -227,17 +227,17 @@ def _sides(box: Array, size: float, *words: Sequence[tuple[float, str]]) -> list
     left, right, bottom, top = box
     line = LINE * size
     parts = [
-        _rectangle(left - line, right + line, bottom - line, bottom),
-        _rectangle(left - line, right + line, top, top + line),
-        _rectangle(left - line, left, bottom, top),
-        _rectangle(right, right + line, bottom, top),
+        rectangle(left - line, right + line, bottom - line, bottom),
+        rectangle(left - line, right + line, top, top + line),
+        rectangle(left - line, left, bottom, top),
+        rectangle(right, right + line, bottom, top),
     ]
     below, beside = bottom - (TICK + GAP + DIGIT) * size, left - (TICK + GAP) * size
     for value, word in words[0]:
-        parts.append(_rectangle(value - line / 2, value + line / 2, bottom - TICK * size, bottom))
+        parts.append(rectangle(value - line / 2, value + line / 2, bottom - TICK * size, bottom))
         parts.append(_word(word, value, below, size, align=0.5))
     for value, word in words[1]:
-        parts.append(_rectangle(left - TICK * size, left, value - line / 2, value + line / 2))
+        parts.append(rectangle(left - TICK * size, left, value - line / 2, value + line / 2))
         parts.append(_word(word, beside, value - DIGIT * size / 2, size, align=1.0))
     return parts
 
@@ -513,7 +513,7 @@ def _bar(box: Array, size: float, metres: float) -> list[Part]:
     high = bottom - (GAP + (DIGIT - THICK) / 2) * size
     end = left + length / metres
     return [
-        _rectangle(left, end, high - THICK * size, high),
+        rectangle(left, end, high - THICK * size, high),
         _word(word, end + 2 * GAP * size, bottom - (GAP + DIGIT) * size, size, align=0.0),
     ]
 
@@ -530,7 +530,8 @@ def _arrow(box: Array, size: float, turn: Array) -> list[Part]:
     return [head, _word("N", x, y - DIGIT * size / 2, size, align=0.5)]
 
 
-def _rectangle(left: float, right: float, bottom: float, top: float) -> Part:
+def rectangle(left: float, right: float, bottom: float, top: float) -> Part:
+    """Return a rectangle as two triangles."""
     corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
     return corners, np.array([[0, 1, 2], [0, 2, 3]])
 

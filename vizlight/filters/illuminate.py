@@ -101,7 +101,7 @@ def illuminate(
         own brightness ``sin(a)^p(j, n)`` is the factor. In codimension 1 that is ``|N . wi|``.
     line_field : bool, default: False
         Whether the signs of ``tangents`` have no meaning, as those of eigenvectors. It matters
-        between the points alone, for :func:`vizlight.refine` and :func:`vizlight.report`: vectors
+        between the points alone, for :func:`vizlight.refine` and :func:`vizlight.check`: vectors
         are interpolated linearly, as by VTK, and lines are turned alike before. Means of a cell
         array are lines in any case.
     bundle : bool or Bundle, default: False

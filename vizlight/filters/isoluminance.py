@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -24,7 +23,6 @@ from vizlight.shading import engine
 from vizlight.shading.display import exposed
 from vizlight.shading.options import LightOptions, Options, check_sides
 from vizlight.shading.results import of_light, part_name, unlit
-from vizlight.verify import report
 from vizlight.vtk.arrays import array_of
 
 if TYPE_CHECKING:
@@ -157,17 +155,9 @@ def isoluminance(
     Source: Isoluminance.
     """
     options = ContourOptions.of(locals())
-    start = time.perf_counter()
-    # The many places that are lit on the way are no result, and no report counts them.
-    with report.paused(), _progress.progress("contours", 100, show=progress_bar) as show:
-        result, bands, light = _make(mesh, scene, options, lambda share: show(int(100 * share)))
+    with _progress.progress("contours", 100, show=progress_bar) as show:
+        result = _make(mesh, scene, options, lambda share: show(int(100 * share)))
         show(100)
-    seconds = time.perf_counter() - start
-    if report.is_open():
-        # With tangents the luminance is interpolated, and its middles have no light of their own to
-        # compare.
-        size = 1024 * result.actual_memory_size
-        _note(bands, light, seconds, size, sampled=options.tangents is None)
     return result
 
 
@@ -176,8 +166,8 @@ def _make(
     scene: AnyScene | None,
     options: ContourOptions,
     progress: Callable[[float], None],
-) -> tuple[pv.MultiBlock, Bands, _Light]:
-    """Return bands and contours as meshes, the bands as arrays, and their luminance."""
+) -> pv.MultiBlock:
+    """Return bands and contours."""
     scene = as_scene(scene)
     light = _Light(scene, options, progress)
     if isinstance(mesh, Solid):
@@ -190,7 +180,7 @@ def _make(
                 )
         bands = _of_solid(mesh, light)
         rgb = _rgb(bands, light) if scene.colored else None
-        return _blocks(bands, options.name, light.record(), rgb, patches=True), bands, light
+        return _blocks(bands, options.name, light.record(), rgb, patches=True)
     data: object = mesh
     if not isinstance(data, pv.DataSet | pv.MultiBlock):
         remedy = "combine solids from vizlight.Sphere, Frustum and Block"
@@ -202,10 +192,10 @@ def _make(
         return _of_mesh(pv.PolyData(), light)
     # Blocks are joined, so that all have the same contours.
     whole = blocks.joined(mesh) if isinstance(mesh, pv.MultiBlock) else mesh
-    result, bands, light = _of_mesh(whole, light)
+    result = _of_mesh(whole, light)
     for block in blocks.all_blocks(result):
         georeference.place_alike(block, whole)
-    return result, bands, light
+    return result
 
 
 class _Light:
@@ -272,7 +262,7 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     )
 
 
-def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Light]:
+def _of_mesh(mesh: pv.DataSet, light: _Light) -> pv.MultiBlock:
     """Return bands and contours of a mesh."""
     scene, options, levels = light.scene, light.options, light.options.levels
     light_options = options.light
@@ -366,7 +356,7 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> tuple[pv.MultiBlock, Bands, _Li
         bands_block.point_data[name] = np.ascontiguousarray(interpolated.reshape(shape), dtype=kind)
     # PyVista would draw an active array of the points in place of the bands.
     bands_block.point_data.active_scalars_name = None
-    return out, bands, light
+    return out
 
 
 def _normals(
@@ -412,26 +402,6 @@ def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices, Indices, Indices |
     if not finite.all():
         triangles = triangles[finite[triangles].all(axis=1)]
     return surface, triangles, np.flatnonzero(used), ids
-
-
-def _note(bands: Bands, light: _Light, seconds: float, size: int, *, sampled: bool) -> None:
-    """Record for the report the difference of bands from the light at their centres."""
-    none: Array = np.empty((0, 3))
-    places, normals = _middles(bands, light) if sampled and len(bands.values) else (none, none)
-    options = light.options
-    terms = engine.plan(light.scene, normals=True, model=options.model).terms
-    report.note_bands(
-        bands.values,
-        len(bands.points),
-        places,
-        normals,
-        light.scene,
-        terms,
-        seconds,
-        size,
-        bands.error,
-        model=options.model,
-    )
 
 
 def _middles(bands: Bands, light: _Light) -> tuple[Array, Array]:

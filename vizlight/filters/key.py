@@ -12,7 +12,7 @@ from vizlight import _check
 from vizlight._questions import QUESTIONS, Question
 from vizlight.filters.tint import RGB, color_table
 from vizlight.scene import Scene, View
-from vizlight.scene.presets import PRESETS, required_scene
+from vizlight.scene.presets import preset_of, required_scene
 from vizlight.shading import engine
 from vizlight.shading.display import LEAST, displayable, numerals, on_colors
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from vizlight.shading.display import Bytes
     from vizlight.shading.options import Exponent
 
-__all__ = ["color_below", "colors_of", "key", "key_picture", "preset_of", "question_of"]
+__all__ = ["color_below", "colors_of", "key", "key_picture", "question_of"]
 
 #: Name of the field array with the words that stand beside a key.
 WORDS = "words"
@@ -242,36 +242,6 @@ def question_of(scene: Scene) -> str:
         If it is no scene.
     """
     return preset_of(scene) or "shape"
-
-
-def preset_of(scene: Scene) -> str | None:
-    """Return the question of the preset with the light of a scene, None for other light.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    str or None
-
-    Raises
-    ------
-    TypeError
-        If it is no scene.
-    """
-    _check.instance("scene", scene, Scene)
-    material = scene.material
-    for name in QUESTIONS:
-        preset = PRESETS[name]()
-        preset_material = preset.material
-        # Without a highlight its colour and its power are of no account.
-        alike = (preset_material.ambient, preset_material.diffuse, preset_material.specular) == (
-            material.ambient, material.diffuse, material.specular,
-        )  # fmt: skip
-        if preset.lights == scene.lights and alike:
-            return name
-    return None
 
 
 def colors_of(

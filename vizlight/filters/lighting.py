@@ -12,7 +12,6 @@ from vizlight import _check, _progress
 from vizlight.mesh import bundles, normals, records, subdivision
 from vizlight.shading import engine
 from vizlight.shading.results import PARTS, VALID, arrays_of, of_light, part_name, unlit
-from vizlight.verify import report
 from vizlight.vtk import parts as vtk_parts
 from vizlight.vtk.batches import batches
 
@@ -56,7 +55,7 @@ def part_of(
         kept_tangents=subdivision.kept_tangents,
         vote=vote,
     )
-    # Triangles are found only where something asks for them, such as a report between the points.
+    # Triangles are found only where something asks for them, such as a check between the points.
     cells = lambda: subdivision.simplices(mesh)  # noqa: E731
     return part._replace(inputs=dataclasses.replace(part.inputs, cells=cells))
 
@@ -96,9 +95,9 @@ def _batches(
     """Return the meshes that are lit together."""
     values = [getattr(options, name) for name in _ARRAYS]
     names = [value for value in values if isinstance(value, str)]
-    # An array without a name belongs to one mesh; a bundle and a report look at each by itself.
+    # An array without a name belongs to one mesh; a bundle looks at each by itself.
     without_name = any(not isinstance(value, str | bool | None) for value in values)
-    if without_name or options.bundle or report.is_open():
+    if without_name or options.bundle:
         return []
     unknown = {i: mesh for i, mesh in enumerate(meshes) if known[i] is None}
     return batches(unknown, names, (normals.KEPT, subdivision.TANGENTS))

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Raw
+    from vizlight._types import Array, Keywords, Raw
     from vizlight.geometry.relief.height_field import Border
     from vizlight.mesh.blocks import MeshT
     from vizlight.shading.options import FeatureAngle
@@ -95,7 +95,7 @@ def relief_day(
         del options["mesh"]
         return blocks.each(mesh, lambda block: relief_day(block, **options))
     shadow_options = ReliefOptions.of(options)
-    hour_options: dict[str, ArrayLike | None] = {
+    hour_options: Keywords = {
         "latitude": latitude,
         "day": day,
         "hours": hours,
@@ -106,7 +106,7 @@ def relief_day(
             expected = "sun alone, without directions, latitude, day and hours"
             raise ValueError(_check.message("sun", expected, "both"))
         directions = hour_options["directions"] = _from_angles(sun)
-    toward = _directions(latitude, day, hours, directions)
+    toward = directions_of(hour_options)
     # A sun below the horizon lights nothing: its hours keep a column of 0.
     up = [way for way in toward if way[2] > 0]
     if not up:
@@ -150,10 +150,11 @@ def _from_angles(sun: ArrayLike) -> Array:
     return sky.toward(angles[:, 0], angles[:, 1])
 
 
-def _directions(
-    latitude: float | None, day: float | None, hours: ArrayLike | None, directions: ArrayLike | None
-) -> Array:
-    """Return the directions toward the sun, one row for each hour."""
+def directions_of(options: Keywords) -> Array:
+    """Return the directions toward the sun, one row for each hour, by options or their record."""
+    latitude, day, hours, directions = (
+        options[name] for name in ("latitude", "day", "hours", "directions")
+    )
     if directions is None:
         if latitude is None or day is None:
             expected = "both, or directions="

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -33,7 +32,6 @@ from vizlight.shading.results import (
     of_filter,
     of_light,
 )
-from vizlight.verify.report import note_ratio
 from vizlight.vtk.cells import check_whole, triangles
 from vizlight.vtk.parts import share_of
 
@@ -124,8 +122,8 @@ class Shadows(NamedTuple):
         return cls(surface, caster(surface, scene, options), lights, share)
 
     def ratios(self, options: ReliefOptions, *, progress_bar: bool) -> Array:
-        """Return t of each point (rows) and light, and add it to a report."""
-        start, shadow, lights = time.perf_counter(), self.caster, self.lights
+        """Return t of each point (rows) and light."""
+        shadow, lights = self.caster, self.lights
         t = np.empty((len(shadow.points), len(lights)))
         discs = [_disc(light, options) for light in lights]
         count, done = len(t), 0
@@ -138,34 +136,39 @@ class Shadows(NamedTuple):
                     done += count
                     report(done)
                 t[:, i] = column / len(disc)
-
-        def again(point: int, light: int) -> float:
-            return float(np.mean([shadow.reference(point, lamp) for lamp in discs[light]]))
-
-        size = t.itemsize * len(t) * (1 + len(lights) * options.components)
-        effort = shadow.effort * max(map(len, discs))
-        note_ratio(t, shadow.valid, time.perf_counter() - start, size, again, effort)
         return t
+
+    def reference(self, point: int, light: int, options: ReliefOptions) -> float:
+        """Return t of a point and a light by a second implementation."""
+        disc = _disc(self.lights[light], options)
+        return float(np.mean([self.caster.reference(point, lamp) for lamp in disc]))
+
+    def effort(self, options: ReliefOptions) -> int:
+        """Return the number of planes of nodes or triangles that one reference tests; 0 if none."""
+        return self.caster.effort * max(len(_disc(light, options)) for light in self.lights)
 
     @property
     def ground(self) -> str:
-        """Digest of the nodes of a height field, empty for other surfaces."""
-        is_field = isinstance(self.caster, FieldCaster) and isinstance(self.surface, Grid)
-        return digest(self.caster.points) if is_field else ""
+        """Digest of the ground: of its points, and of a surface of its normals and cells too."""
+        if isinstance(self.surface, Grid):
+            return digest(self.caster.points)
+        cells = records.fingerprint(self.surface)
+        return f"{records.source(self.caster.points, self.caster.normals)} {cells}"
 
     def recorded(self, options: ReliefOptions, scene: Scene) -> Array | None:
-        """Return t of each point from its array, None where that is of other ground or light.
+        """Return t of each point from its arrays, None where they are of other ground or light.
 
-        Of several lights the array has the mean alone.
+        Of several lights a mesh has the mean alone, unless it was lit with ``components``.
         """
-        record, ground = records.read(self.surface, options.name) or {}, self.ground
-        if len(self.lights) != 1 or not ground or record.get("ground") != ground:
+        name, count = options.name, len(self.lights)
+        record, ours = records.read(self.surface, name) or {}, records.made(self.surface, name)
+        columns = [name] if count == 1 else [f"{name}_{i}" for i in range(count)]
+        if record.get("ground") != self.ground or not ours.issuperset(columns):
             return None
         cast_by = ReliefOptions.of(record["options"] | {"lit": True, "components": False})
-        same = cast_by == options and Scene.from_dict(record["scene"]) == scene
-        if not same or options.name not in records.made(self.surface, options.name):
+        if cast_by != options or Scene.from_dict(record["scene"]) != scene:
             return None
-        return np.asarray(self.surface.point_data[options.name])[:, np.newaxis]
+        return np.column_stack([np.asarray(self.surface.point_data[key]) for key in columns])
 
     def inputs(self, t: Array) -> ShadingInputs:
         """Return what the engine lights: it multiplies each light by its own column of t."""

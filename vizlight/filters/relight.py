@@ -21,9 +21,10 @@ from vizlight.shading.options import Bundle, LightOptions, ShadingOptions
 from vizlight.shading.results import DEFAULT_NAME, part_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from vizlight._types import Given, Keywords
+    from vizlight.filters.relief_shadow import ReliefOptions, Shadows
     from vizlight.scene import View
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ShadingInputs
@@ -43,7 +44,8 @@ class Source(NamedTuple):
     changed; None where that takes the filter itself. Where normals are turned to the eye,
     ``inputs`` has them as they are and ``sided`` turns them. ``inside`` is the number of points of
     a volume that are not on its surface. ``shares`` gives the shares of light inside a bundle.
-    ``field`` is the height field that casts the shadow, or why a shader cannot cast it.
+    ``field`` is the height field by which a shader casts the shadow, and ``uncast`` says why there
+    is none.
     """
 
     mesh: pv.DataSet
@@ -53,7 +55,8 @@ class Source(NamedTuple):
     sided: Sided | None = None
     inside: int = 0
     shares: bundles.Dimmed | None = None
-    field: EvenField | str = ""
+    field: EvenField | None = None
+    uncast: str = ""
 
     @property
     def facing(self) -> Facing:
@@ -82,10 +85,12 @@ def from_options(
     chosen = [*blocks.named_blocks(mesh)]
     # One sky for all blocks, since they hide it from one another.
     meshes = with_sky([block for block, _ in chosen], options.occlusion)
-    return [
+    sources = [
         read(block, path, scene, options, sky_mesh)
         for sky_mesh, (block, path) in zip(meshes, chosen, strict=True)
     ]
+    refuse_following(sources, scene)
+    return sources
 
 
 def read(
@@ -112,7 +117,6 @@ def read(
     inputs, sided = part.inputs, part.sided
     shares: bundles.Dimmed | None = None
     if isinstance(options.bundle, Bundle):
-        _refuse_following(scene)
         names = (options.name, part_name(options.name, bundles.TRANSMITTANCE))
         work = bundles.Work([mesh], [inputs], options.bundle)
         shares = bundles.Dimmed(mesh, inputs, work, names)
@@ -129,9 +133,10 @@ def read(
     return source._replace(inputs=inputs, sided=sided)
 
 
-def _refuse_following(scene: Scene) -> None:
+def refuse_following(sources: Sequence[Source], scene: Scene) -> None:
     """Refuse a light that follows the view beside shares of light that do not."""
-    if any(light.follows_view and light.intensity > 0 for light in scene.lights):
+    dimmed = any(source.inputs.transmittance is not None for source in sources)
+    if dimmed and any(light.follows_view and light.intensity > 0 for light in scene.lights):
         expected, got = "lights that stay beside it in a live light", "one that follows the view"
         raise ValueError(_check.message("bundle", expected, got, "give the scene fixed lights"))
 
@@ -175,17 +180,30 @@ def from_record(
         from the mesh's, because points or arrays have changed.
     """
     sources, recorded = _read_record(mesh, scene, name)
+    refuse_following(sources, recorded)
     if scene is None and records.provenance(mesh, name).get("filter") != "fur":
         _light_again(sources, recorded, name)
     return sources, recorded
 
 
-def terms_from_record(
-    mesh: pv.DataSet | pv.MultiBlock, name: str
-) -> tuple[list[Source], Scene, list[Shading]]:
-    """Return the results of :func:`from_record`, and the light of each source in terms."""
+class Relit(NamedTuple):
+    """Light of one mesh, computed once more from its record.
+
+    ``scene`` has both ends of its depth cue, and ``inputs`` has the normals on the side of the eye.
+    """
+
+    source: Source
+    inputs: ShadingInputs
+    scene: Scene
+    shading: Shading
+
+
+def lit_again(
+    mesh: pv.DataSet | pv.MultiBlock, name: str, *, components: bool | None = None
+) -> list[Relit]:
+    """Return the light of each mesh by its record, in terms if the record or a caller says so."""
     sources, scene = _read_record(mesh, None, name)
-    return sources, scene, _light_again(sources, scene, name, components=True)
+    return _light_again(sources, scene, name, components=components)
 
 
 def _read_record(
@@ -233,11 +251,13 @@ def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Given], scene: S
 
 def _refuse_described(filter_name: str, options: Mapping[str, object]) -> None:
     """Refuse options that the record describes instead of holding them."""
-    for option, value in options.items():
-        # Meshes and large arrays are described in a record by words like these.
-        if isinstance(value, str) and (
-            value.startswith("an array of shape") or value.endswith(" points")
-        ):
+    for option, values in options.items():
+        for value in values if isinstance(values, list) else [values]:
+            # Meshes and large arrays are described in a record by words like these.
+            if not isinstance(value, str) or not (
+                value.startswith("an array of shape") or value.endswith(" points")
+            ):
+                continue
             remedy = f"attach the array and name it by {option}=, or pass scene= and the options"
             expected = f"a record of {filter_name} that holds {option}"
             raise ValueError(_check.message("mesh", expected, value, remedy))
@@ -274,25 +294,33 @@ def _of_projection(mesh: pv.DataSet, options: Keywords) -> LightOptions:  # noqa
     return projection.by(frame, projection.positions if before else None)
 
 
-def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
-    """Return the source of light with a cos-theta shadow, cast again unless its array suffices."""
+def shadows_of(
+    mesh: pv.DataSet, options: Mapping[str, Given], scene: Scene
+) -> tuple[Shadows, ReliefOptions]:
+    """Return the shadows that a record tells of, before they are cast, and their options."""
     from vizlight.filters.relief_shadow import ReliefOptions, Shadows
 
-    relief_options = ReliefOptions.of(options | {"lit": True, "components": False})
+    _refuse_described("relief_shadow", options)
+    relief_options = ReliefOptions.of({**options, "lit": True, "components": False})
     with warnings.catch_warnings():
         # They were given when the field was lit.
         warnings.simplefilter("ignore", UserWarning)
         surface = mesh if isinstance(mesh, pv.PolyData | Grid) else blocks.surface(mesh, "mesh")
-        shadows = Shadows.of(surface, scene, relief_options)
+        return Shadows.of(surface, scene, relief_options), relief_options
+
+
+def _of_relief(mesh: pv.DataSet, options: Keywords, scene: Scene) -> Source:
+    """Return the source of light with a cos-theta shadow, cast again unless its arrays suffice."""
+    shadows, relief_options = shadows_of(mesh, options, scene)
     t = shadows.recorded(relief_options, scene)
     if t is None:
         t = shadows.ratios(relief_options, progress_bar=False)
-    field: EvenField | str = "a closed surface casts it"
-    if isinstance(shadows.caster, FieldCaster):
-        field = shadows.caster.even(mesh)
+    field, uncast = None, "a closed surface casts it"
     if relief_options.angular_diameter > 0:
-        field = "the lights are discs"
-    return Source(mesh, shadows.inputs(t), ShadingOptions(), None, field=field)
+        uncast = "the lights are discs"
+    elif isinstance(shadows.caster, FieldCaster):
+        field, uncast = shadows.caster.even(mesh)
+    return Source(mesh, shadows.inputs(t), ShadingOptions(), None, field=field, uncast=uncast)
 
 
 def _of_fur(
@@ -305,8 +333,6 @@ def _of_fur(
     if not isinstance(mesh, pv.MultiBlock) or {"fibres", "skin"} - set(mesh.keys()):
         expected, remedy = "the fibres and the skin of fur", "pass the MultiBlock that fur returned"
         raise ValueError(_check.message("mesh", expected, "one of them", remedy))
-    if options.get("bundle"):
-        _refuse_following(scene)
     fibres, skin = mesh["fibres"], mesh["skin"]
     assert isinstance(fibres, pv.DataSet)
     assert isinstance(skin, pv.PolyData)
@@ -319,17 +345,16 @@ def _of_fur(
 
 
 def _light_again(
-    sources: list[Source], scene: Scene, name: str, *, components: bool = False
-) -> list[Shading]:
+    sources: list[Source], scene: Scene, name: str, *, components: bool | None = None
+) -> list[Relit]:
     """Return the light of the record, which must match the light of the meshes."""
-    parts = [
-        (
-            source.seen_from(scene.view, source.inputs),
-            dataclasses.replace(source.options, components=components),
-        )
-        for source in sources
-    ]
-    results, _ = lighting.light(parts, scene, progress_bar=False)
+    parts = []
+    for source in sources:
+        options = source.options
+        if components is not None:
+            options = dataclasses.replace(options, components=components)
+        parts.append((source.seen_from(scene.view, source.inputs), options))
+    results, fitted = lighting.light(parts, scene, progress_bar=False)
     for source, shading in zip(sources, results, strict=True):
         stored = _check.floats(f"mesh, {name}", source.mesh.point_data[name])
         if stored.shape != shading.luminance.shape:
@@ -342,4 +367,7 @@ def _light_again(
             expected = f"a mesh whose {name!r} matches its record"
             remedy = "light it again: points or arrays have changed"
             raise ValueError(_check.message("mesh", expected, share, remedy))
-    return results
+    return [
+        Relit(source, inputs, fitted, shading)
+        for source, (inputs, _), shading in zip(sources, parts, results, strict=True)
+    ]

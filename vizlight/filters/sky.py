@@ -19,7 +19,6 @@ from vizlight.model import kernels
 from vizlight.scene.keywords import named
 from vizlight.shading.options import Options, check_sides
 from vizlight.shading.results import VALID, digest, plain
-from vizlight.verify.report import noted_sky
 from vizlight.vtk.cells import places, point_data
 from vizlight.vtk.corners import SHARP
 from vizlight.vtk.normals import computed_normals
@@ -311,14 +310,12 @@ def _found(
 ) -> list[Sky]:
     total = sum(mesh.n_points for mesh in meshes)
     error = options.error or _error(meshes, FOR_POINTS)
-    with _progress.progress("sky", total, show=show) as report, noted_sky(total) as note:
-        results = skies(
+    with _progress.progress("sky", total, show=show) as report:
+        return skies(
             meshes, error=error, up=None if options.up is None else tuple(options.up),
             diameter=options.diameter, openness=options.openness,
             report=lambda now: report(min(now, total)), elevation=elevation, factor=factor,
         )  # fmt: skip
-        note([result.record for result in results])
-        return results
 
 
 def _warn_of_lost(results: Sequence[Sky], options: SkyOptions) -> None:

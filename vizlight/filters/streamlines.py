@@ -20,7 +20,7 @@ from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
 from vizlight.model import kernels, line_fields
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import PRESETS, as_scene
+from vizlight.scene.presets import as_scene, preset_of
 from vizlight.shading.options import LightOptions
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import array_of, vectors_of
@@ -287,7 +287,9 @@ def light_lines(
     options = dataclasses.replace(options, tangents=vector_names)
     mesh = records.averaged(mesh, *_names(options.tangents))
     scene = as_scene(scene)
-    if options.conditioned is None and _tells_of_lines(scene):
+    preset = QUESTIONS.get(preset_of(scene) or "")
+    if options.conditioned is None and preset is not None and preset.of_tangents:
+        # The self-shadow of a surface would hide how lines run.
         options = dataclasses.replace(options, conditioned=False)
     full = _resolved(mesh, options)
     with _progress.progress("trace", 100, show=progress_bar) as report:
@@ -363,15 +365,6 @@ def _speed(lines: pv.PolyData, options: StreamlineOptions) -> Array | None:
 def own_name(mesh: pv.DataSet, name: str) -> str:
     """Return the name of an array of lines, another one where the traced mesh has that name."""
     return name if name not in mesh.point_data else f"vizlight {name}"
-
-
-def _tells_of_lines(scene: Scene) -> bool:
-    """Return whether a scene has the light of a preset that tells how lines run.
-
-    The self-shadow of a surface would hide it.
-    """
-    presets = (PRESETS[name]() for name, question in QUESTIONS.items() if question.of_tangents)
-    return any((p.lights, p.material) == (scene.lights, scene.material) for p in presets)
 
 
 def _check_mesh(mesh: object, argument: str) -> None:

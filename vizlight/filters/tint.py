@@ -17,7 +17,6 @@ from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.shading import display
 from vizlight.shading.results import DEFAULT_NAME, VALID, part_name
-from vizlight.verify import report
 from vizlight.vtk.arrays import are_colors, at_points, is_of_cells
 from vizlight.vtk.cells import has_faces, has_polyhedra
 
@@ -159,9 +158,7 @@ def tint(
         below_color=below_color,
     )  # fmt: skip
     record = _record(table, scalars, light, component)
-    # The points were lit before: a report counts the light on their colours apart.
-    with report.tinted():
-        lights = _light_of(lit, lit_blocks, light)
+    lights = _light_of(lit, lit_blocks, light)
     colors = []
     for value, (share, valid), (_, origin) in zip(values, lights, split, strict=True):
         mapped = map_colors(table, value, components=3)
@@ -432,22 +429,19 @@ def _light_of(
     stored = [_stored(mesh, light) for mesh in meshes]
     carried = [entry for entry in stored if entry is not None]
     if len(carried) == len(meshes):
-        for values, _ in carried:
-            report.note_stored(values, light)
         return carried
     scene = Scene.from_dict(records.provenance(lit, light)["scene"])
     # A cue fades the whole sum, and light of a colour counts by its luma: both are computed as a
     # whole for colours of data.
     if scene.depth_cue is not None or _colored(scene):
-        with report.paused():
-            sources, scene, _ = relight.terms_from_record(lit, light)
-        return [*light_on_colors(sources, scene)]
-    sources, scene, again = relight.terms_from_record(lit, light)
+        again = relight.lit_again(lit, light)
+        return [*light_on_colors([part.source for part in again], scene)]
+    again = relight.lit_again(lit, light, components=True)
     # Colours of data never have less ambient light, so that they can be read in the shade.
     least = max(scene.material.ambient, display.LEAST) * scene.ambient_intensity
     lights: list[tuple[Array, Bools | None]] = []
-    for source, shading in zip(sources, again, strict=True):
-        share = source.inputs.occlusion
+    for part in again:
+        share, shading = part.inputs.occlusion, part.shading
         # Anything that hides the sky from a point dims the ambient light alone.
         ambient = least if share is None else least * np.asarray(share[:])
         valid = shading.valid if shading.invalid else None

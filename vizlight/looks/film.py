@@ -291,7 +291,10 @@ def step(look: vizlight.Look, path: Path) -> Step | None:
     options = _settings(look, read, times)
     if _Flow.of(look) is not None and (count := round(FASTEST / _pace(times))) > 1:
         options["per_step"] = count
-    return Step("", "film.save", read.arguments[0], path, *question, **options)
+    saved = Step("", "film.save", read.arguments[0], path, *question, **options)
+    # What a picture of one step says of it, a movie of all does not.
+    saved.note = series.note(read.run())
+    return saved
 
 
 def _pace(times: Sequence[float]) -> float:

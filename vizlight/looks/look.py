@@ -449,13 +449,13 @@ def decide(data: object, wishes: Wishes) -> Look:
     several = list(data) if isinstance(data, list | tuple) else [data]
     if not several:
         raise ValueError(message("data", "a mesh, a file, or several", "none"))
-    if _have_components(several, wishes):
-        # Components of one vector in several files, on one grid.
+    joined = _of_components(several, wishes)
+    if joined is not None:
         wishes = replace(wishes, part={**wishes.part, "overlay": several[1:]})
         several = several[:1]
     parts, steps = [], []
     for item in several:
-        for step in read_steps(item, wishes):
+        for step in read_steps(item, wishes) if joined is None else [joined]:
             parts.append(item)
             steps.append(step)
     ready = [prepared(part, step, wishes) for part, step in zip(parts, steps, strict=True)]
@@ -552,23 +552,32 @@ def _is_of_grid(data: object) -> bool:
     return cf_grids.is_grid(data)
 
 
-def _have_components(data: Sequence[object], wishes: Wishes) -> bool:
-    """Return whether files have each a component of one vector, such as that of a wind."""
+def _of_components(data: Sequence[object], wishes: Wishes) -> Step | None:
+    """Return the step that reads components of one vector, such as a wind, from several files.
+
+    None where they have no such components, or are not on one grid.
+    """
     paths = [item for item in data if isinstance(item, str | Path)]
     if len(data) < 2 or len(paths) < len(data) or "overlay" in wishes.part:
-        return False
+        return None
     if not all(map(_is_of_grid, paths)):
-        return False
+        return None
     keywords = {name: wishes.part[name] for name in look_options.READ if name in wishes.part}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # given where they are read again
-        try:
+    step = Step("data", "vizlight.read", paths[0], **keywords | {"overlay": paths[1:]})
+    try:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            joined = step.run()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # those of the joined mesh are given below
             alone = files.read(paths[0], **keywords)
-            joined = files.read(paths[0], overlay=paths[1:], **keywords)
-        except (ValueError, OSError):
-            return False  # they are not on one grid
-    assert isinstance(joined, pv.DataSet)
-    return any(not {*group} <= {*alone.point_data} for group in meaning.components(joined))
+    except (ValueError, OSError):
+        return None
+    if all({*group} <= {*alone.point_data} for group in meaning.components(joined)):
+        return None
+    for warning in caught:
+        _check.warn(str(warning.message))
+    return step
 
 
 def read_steps(data: object, wishes: Wishes) -> list[Step]:

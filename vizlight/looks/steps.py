@@ -138,11 +138,8 @@ def written(steps: Sequence[Step]) -> Path:
     return result[0] if isinstance(result, list) else Path(result)
 
 
-def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> str:
-    """Return the script that runs the steps of each job in order.
-
-    The steps ``reported`` stand in a block that prints its cost.
-    """
+def source(jobs: Sequence[Sequence[Step]]) -> str:
+    """Return the script that runs the steps of each job in order."""
     lines: list[str] = []
     heads: set[str] = set()
     holders: dict[str, Step] = {}
@@ -153,7 +150,7 @@ def source(jobs: Sequence[Sequence[Step]], *, reported: Sequence[Step] = ()) -> 
             if step.path == "-":
                 lines.append(f"# {step.name}: the {type(step.arguments[0]).__name__} of the look")
             elif step.name or any(step is last for last in job):
-                lines += _statement(step, reported=any(step is other for other in reported))
+                lines += _statement(step)
     if any('"vizlight.' in line for line in lines):
         # Its colour maps have names as soon as their module is loaded.
         heads = heads - {"vizlight"} | {"vizlight.maps"}
@@ -194,12 +191,10 @@ def in_order(steps: Sequence[Step]) -> list[Step]:
     return ordered
 
 
-def _statement(step: Step, *, reported: bool) -> list[str]:
-    indent = INDENT if reported else 0
+def _statement(step: Step) -> list[str]:
     head = f"{step.name} = " if step.name else ""
-    lines = [f"{' ' * indent}{head}{_call(step, indent, len(head))}"]
-    lines += [f"{step.name}.{key} = {_text(value)}" for key, value in step.attributes.items()]
-    return ["with vizlight.report() as report:", *lines, "print(report)"] if reported else lines
+    lines = [f"{head}{_call(step, 0, len(head))}"]
+    return lines + [f"{step.name}.{key} = {_text(value)}" for key, value in step.attributes.items()]
 
 
 def _text(value: object, indent: int = 0, taken: int = 0) -> str:

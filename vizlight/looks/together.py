@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from vizlight.filters.key import preset_of
 from vizlight.looks.recipes.drawing import range_of
 from vizlight.looks.steps import Step
+from vizlight.scene.presets import preset_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

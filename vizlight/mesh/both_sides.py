@@ -13,7 +13,6 @@ from vizlight import _check
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Array, Vector
 
 __all__ = ["both_sides"]
 
@@ -76,7 +75,7 @@ def both_sides(
         warnings.filterwarnings("ignore", "Integer points, vector")
         # Of a copy, since PyVista changes such arrays of the mesh itself.
         turned = surface.copy(deep=False).rotate_vector(
-            _vector(upward), 180, point=surface.center, transform_all_input_vectors=True
+            upward.tolist(), 180, point=surface.center, transform_all_input_vectors=True
         )
     # Whole numbers are colours and labels, which PyVista takes for vectors if there are three.
     for data, other in (
@@ -89,10 +88,5 @@ def both_sides(
     bounds = np.reshape(surface.bounds, (3, 2))
     wide, tall = (float(np.abs(way) @ np.ptp(bounds, axis=1)) for way in (right, upward))
     step = (1 + APART) * wide * right if wide < WIDE * tall else -(1 + APART) * tall * upward
-    turned.translate(_vector(step), inplace=True)
+    turned.translate(step.tolist(), inplace=True)
     return pv.MultiBlock(dict(zip(words, (surface.copy(deep=False), turned), strict=True)))
-
-
-def _vector(values: Array) -> Vector:
-    x, y, z = values.tolist()
-    return x, y, z

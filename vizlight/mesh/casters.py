@@ -186,25 +186,25 @@ class FieldCaster:
         t[~self.valid] = 0
         return t
 
-    def even(self, mesh: pv.DataSet) -> EvenField | str:
-        """Return the field for a shader that draws its mesh, or why it has none."""
+    def even(self, mesh: pv.DataSet) -> tuple[EvenField | None, str]:
+        """Return the field for a shader that draws its mesh, or None and why it has none."""
         field = self._field
         if isinstance(self._heights, Raster):
-            return "the height field is sampled from a surface"
+            return None, "the height field is sampled from a surface"
         if field.border != "extend":
-            return "a border of walls is known at the points"
+            return None, "a border of walls is known at the points"
         if self.depth <= shadowing.LEAST_DEPTH * field.size:
-            return "the limit for depth 0 is known at the points"
+            return None, "the limit for depth 0 is known at the points"
         steps = [np.diff(axis) for axis in (field.x, field.y)]
         if any(np.ptp(step) > EVEN * step.mean() for step in steps):
-            return "rows or columns of the height field are uneven"
+            return None, "rows or columns of the height field are uneven"
         of_mesh = np.asarray(mesh.points)[:, :2]
         if np.ptp(field.stretch) or not np.allclose(self.points[:, :2], of_mesh, rtol=1e-6):
-            return "the field is a map in degrees"
+            return None, "the field is a map in degrees"
         step_x, step_y = (float(step.mean()) for step in steps)
         axes = self._turn / np.array([[step_x], [step_y], [1.0]])
         # Rows times a rotation are turned by its transpose, here back to the axes of the mesh.
-        return EvenField(field.heights, field.origin @ self._turn, axes, self.depth)
+        return EvenField(field.heights, field.origin @ self._turn, axes, self.depth), ""
 
     def _inner(self, rows: Array) -> Array:
         """Return the rows at the nodes of the grid itself."""

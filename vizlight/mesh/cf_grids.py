@@ -200,8 +200,8 @@ def read(
             group, along, note = grib_groups.opened(path, at or {})
             with group as file:
                 notes = grib_groups.missing_messages(file)
-                reader = _Reader(file, [*notes, note] if note else notes)
-                return reader.grid(time, along, nodata, str(path))
+                reader = _Reader(file, nodata, str(path), [*notes, note] if note else notes)
+                return reader.grid(time, along)
         options: Keywords = {"engine": _engine(path), "decode_times": False}
         try:
             opened = xarray.open_dataset(path, decode_coords="all", **options)
@@ -272,7 +272,7 @@ def of_dataset(
         data = data.to_dataset(name=data.name or "values")
     if radars.is_radar(data):
         return radars.grid(_with_numbers(data), at or {}, nodata, source)
-    return _Reader(data).grid(time, dict(at or {}), nodata, source)
+    return _Reader(data, nodata, source).grid(time, dict(at or {}))
 
 
 class Steps:
@@ -331,8 +331,12 @@ _PlacesT = TypeVar("_PlacesT", pv.PolyData, pv.RectilinearGrid)
 class _Reader:
     """Reader of one dataset, which notes what the grid means."""
 
-    def __init__(self, data: Foreign, notes: Sequence[str] = ()) -> None:
-        self.said = Meaning(notes=[*notes])
+    def __init__(
+        self, data: Foreign, nodata: float | None, source: str, notes: Sequence[str] = ()
+    ) -> None:
+        self.nodata, self.source, self.said = nodata, source, Meaning(notes=[*notes])
+        #: Index along each axis of which a single value is taken.
+        self.single: dict[str, int] = {}
         self.file = unstructured.with_nodes(_with_numbers(data))
         if left := [str(name) for name, one in data.data_vars.items() if one.dtype.kind == "c"]:
             words = f"left out, complex numbers: {', '.join(left)}; take numpy.abs or numpy.angle"
@@ -369,25 +373,23 @@ class _Reader:
         letter = ("", "") if along is None else _letter_of(str(along.name), along.attrs)
         return letter if letter[0] else _letter_of(dim, {})
 
-    def grid(
-        self, time: object, at: dict[str, object], nodata: float | None, source: str
-    ) -> pv.DataSet:
+    def grid(self, time: object, at: dict[str, object]) -> pv.DataSet:
         """Return the grid; see :func:`of_dataset`."""
         self._join_faces(at)
-        ticking, step, single = self._step(time)
+        ticking, step = self._step(time)
         notes = [*self.said.notes]
-        single |= self._chosen(at)
+        self.single |= self._chosen(at)
         clock = "" if time is not None else self._clock_of_section({*at})
-        is_drawn = clock != "" and not self._fields(single)
+        is_drawn = clock != "" and not self._fields()
         if is_drawn:
             self.letters[clock] = "x", self.letters[clock][1]
             self.said.span = []
-            del single[clock]
-        mesh = self._mesh(single, nodata, source)
+            del self.single[clock]
+        mesh = self._mesh()
         if time is None and not at and _is_empty(mesh) and (clocks := self._last_with_data()):
             self.said.notes = notes
-            ticking, step, single = self._step(time, clocks)
-            mesh = self._mesh(single, nodata, source)
+            ticking, step = self._step(time, clocks)
+            mesh = self._mesh()
         of_track = self.listed is not None and self.letters[self.listed.dim][0] == "t"
         is_step = (len(ticking) > 1 or self.said.time) and not (of_track or is_drawn)
         return series.marked(mesh, ticking, step) if is_step else mesh
@@ -415,17 +417,17 @@ class _Reader:
             self.file, self.listed = file, listed.listed(file, _node_letter)
             self.letters = {str(dim): self._letter(str(dim)) for dim in file.sizes}
 
-    def _mesh(self, single: dict[str, int], nodata: float | None, source: str) -> pv.DataSet:
-        """Return the grid of some indices along axes."""
+    def _mesh(self) -> pv.DataSet:
+        """Return the grid of the single values along axes."""
         mesh: pv.DataSet
         if self.topology is not None:
-            mesh = self._surface(self.topology, single, nodata, source)
+            mesh = self._surface(self.topology)
         elif self.listed is not None and self.listed.x_bounds:
-            mesh = self._cells(self.listed, single, nodata, source)
-        elif fields := self._fields(single):
-            mesh = self._on_axes(fields, single, nodata, source)
+            mesh = self._cells(self.listed)
+        elif fields := self._fields():
+            mesh = self._on_axes(fields)
         elif self.listed is not None:
-            mesh = self._points(self.listed, single, nodata, source)
+            mesh = self._points(self.listed)
         else:
             reasons = "; ".join([*self.said.notes, *self._without_places()])
             lacking = "no variable on a grid of two or three axes"
@@ -442,13 +444,7 @@ class _Reader:
             for name, _ in itertools.islice(self._of_lists({dim}), 1)
         ][:1]
 
-    def _on_axes(
-        self,
-        fields: Mapping[str, Foreign],
-        single: dict[str, int],
-        nodata: float | None,
-        source: str,
-    ) -> pv.DataSet:
+    def _on_axes(self, fields: Mapping[str, Foreign]) -> pv.DataSet:
         """Return the grid of the axes of the largest of some variables, with those that fit."""
         middles = self._middles()
 
@@ -461,7 +457,7 @@ class _Reader:
         named = self._named([middles.get(dim, dim) for dim in largest.dims])
         # A section has its place along x and its height along y.
         dims = [named[letter] for letter in "xyz" if letter in named]
-        places, mapped = self._places(dims, self.file[largest.name].dims, single)
+        places, mapped = self._places(dims, self.file[largest.name].dims)
         axes = [self._axis(dim, places) for dim in dims]
         if mapped and places is not None and (straight := _straight(*places)) is not None:
             # Such coordinates are those of rows and columns, written out.
@@ -484,7 +480,7 @@ class _Reader:
                 averaged.append(name)
             self.said.add_array(name, values.attrs)
             rows = np.asarray(values.transpose(*reversed(dims)).values)
-            rows, missing = fills.without_missing(name, _within(rows, values.attrs), nodata)
+            rows, missing = fills.without_missing(name, _within(rows, values.attrs), self.nodata)
             words += [missing] if missing else []
             rows = self._heights(name, rows, values.attrs, flat=len(dims) == 2)
             for i, axis in enumerate(axes):
@@ -507,7 +503,7 @@ class _Reader:
             self.said.notes.append(f"averaged from the sides of cells to their middles: {text}")
         if left := sorted({*fields} - {*grid.point_data}):
             self.said.notes.append(f"left out, on other axes: {', '.join(left)}")
-        self._say(source, words)
+        self.said.notes += fills.say(self.source, words)
         if places is not None:
             # Components are told by the names and units of the arrays.
             meaning.attach(grid, self.said)
@@ -547,17 +543,7 @@ class _Reader:
             self.said.notes.append(f"{left} cells without a place are left out")
         return found
 
-    def _say(self, source: str, words: list[str]) -> None:
-        """Warn of missing values, and note them."""
-        self.said.notes += fills.say(source, words)
-
-    def _surface(
-        self,
-        of: unstructured.Topology,
-        single: dict[str, int],
-        nodata: float | None,
-        source: str,
-    ) -> pv.PolyData:
+    def _surface(self, of: unstructured.Topology) -> pv.PolyData:
         """Return the faces of a mesh in the plane, with the values of its nodes and faces."""
         scale, unit = self._unit(of.x, of.y)
         degrees = unit == georeference.DEGREE
@@ -568,15 +554,13 @@ class _Reader:
             of.nodes: (mesh.point_data, faces.at_points),
             of.faces: (mesh.cell_data, lambda rows: rows[whole][faces.faces]),
         }
-        self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
+        self._with_values(mesh, rows_of, (unit, words))
         if degrees:
             nodes = [np.ravel(self.file[name].values) * scale for name in (of.x, of.y)]
             unrolled.turn_vectors(mesh, faces, np.column_stack(nodes))
         return mesh
 
-    def _cells(
-        self, of: listed.Listed, single: dict[str, int], nodata: float | None, source: str
-    ) -> pv.PolyData:
+    def _cells(self, of: listed.Listed) -> pv.PolyData:
         """Return the cells of a list by their corners, with their values."""
         scale, unit = self._unit(of.x, of.y)
         x, y = (
@@ -587,14 +571,12 @@ class _Reader:
         mesh = faces.mesh()
         words = f"x and y of the corners of cells, {of.x_bounds!r} and {of.y_bounds!r}, by bounds"
         rows_of: _RowsOf = {of.dim: (mesh.cell_data, lambda rows: rows[whole][faces.faces])}
-        return self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
+        return self._with_values(mesh, rows_of, (unit, words))
 
-    def _points(
-        self, of: listed.Listed, single: dict[str, int], nodata: float | None, source: str
-    ) -> pv.PolyData | pv.RectilinearGrid:
+    def _points(self, of: listed.Listed) -> pv.PolyData | pv.RectilinearGrid:
         """Return the points of a list with their values, as a grid if they stand on one."""
         # The places of a track are those of its times.
-        single.pop(of.dim, None)
+        self.single.pop(of.dim, None)
         scale, unit = self._unit(of.x, of.y)
         x, y = (scale * np.asarray(self.file[name].values, np.float64) for name in (of.x, of.y))
         mesh, kept = listed.points(x, y, degrees=unit == georeference.DEGREE)
@@ -612,7 +594,7 @@ class _Reader:
             if isinstance(mesh, pv.PolyData):
                 self.said.notes.append(f"points, since no cells of {of.dim!r} are known")
             rows_of = {of.dim: (mesh.point_data, lambda rows: rows[kept])}
-        return self._with_values(mesh, rows_of, single, (unit, words), nodata, source)
+        return self._with_values(mesh, rows_of, (unit, words))
 
     def _unit(self, x: str, y: str) -> tuple[float, str]:
         """Return the factor and the unit of coordinates: metre, degree or an empty text."""
@@ -627,15 +609,7 @@ class _Reader:
         metres = meaning.metres(unit)
         return metres or 1.0, "metre" if metres else ""
 
-    def _with_values(
-        self,
-        mesh: _PlacesT,
-        rows_of: _RowsOf,
-        single: dict[str, int],
-        of_axes: tuple[str, str],
-        nodata: float | None,
-        source: str,
-    ) -> _PlacesT:
+    def _with_values(self, mesh: _PlacesT, rows_of: _RowsOf, of_axes: tuple[str, str]) -> _PlacesT:
         """Return a mesh with the values along some dimensions.
 
         ``rows_of`` has where these are kept, and a function of the rows of the file that returns
@@ -645,10 +619,10 @@ class _Reader:
         for name, variable in self._of_lists({*rows_of}):
             dims: list[str] = [str(dim) for dim in variable.dims]
             (along,) = {*dims} & {*rows_of}
-            others = {dim: self._index(dim, single) for dim in dims if dim != along}
+            others = {dim: self._index(dim) for dim in dims if dim != along}
             self.said.add_array(name, variable.attrs)
             values = _within(np.asarray(variable.isel(others).values), variable.attrs)
-            values, missing = fills.without_missing(name, values, nodata)
+            values, missing = fills.without_missing(name, values, self.nodata)
             words += [missing] if missing else []
             if isinstance(mesh, pv.RectilinearGrid) and variable.attrs.get(_TURNING) == 1:
                 values = listed.with_turned_rows(values, mesh.dimensions[0])
@@ -662,7 +636,7 @@ class _Reader:
         }
         if left := sorted(on_edges - self.tables):
             self.said.notes.append(f"left out, on edges: {', '.join(left)}")
-        self._say(source, words)
+        self.said.notes += fills.say(self.source, words)
         if unit:
             mesh.field_data[georeference.UNIT] = [unit]
         meaning.attach(mesh, self.said)
@@ -680,11 +654,11 @@ class _Reader:
             if one and numbers and name not in aside and not _node_letter(name, variable.attrs):
                 yield name, variable
 
-    def _index(self, dim: str, single: Mapping[str, int]) -> int:
+    def _index(self, dim: str) -> int:
         """Return the index along a dimension: a chosen one, that of the ground, or the first."""
         along = self._coordinate(dim)
-        if dim in single:
-            return single[dim]
+        if dim in self.single:
+            return self.single[dim]
         if self.letters[dim][0] != "z" or along is None or along.dtype.kind not in "iuf":
             self._note_first({dim: 0})
             return 0
@@ -733,8 +707,8 @@ class _Reader:
 
     def _step(
         self, time: object, clocks_of: Mapping[str, int] | None = None
-    ) -> tuple[list[float], int, dict[str, int]]:
-        """Return the times of the steps, the index of one, and that along each axis of time.
+    ) -> tuple[list[float], int]:
+        """Return the times of the steps and the index of one; take it along each axis of time.
 
         ``clocks_of`` has indices along axes of time, in place of those that ``time`` tells.
         """
@@ -742,7 +716,7 @@ class _Reader:
         sizes = self.file.sizes
         # A file may have several clocks: the one with most steps tells them.
         clock = max(clocks, key=lambda dim: int(sizes[dim]), default=None)
-        single = dict.fromkeys(clocks, 0)
+        self.single = dict.fromkeys(clocks, 0)
         along = self._moment() if clock is None else self._coordinate(clock)
         ticks = np.arange(sizes.get(clock, 1)) if along is None else np.ravel(along.values)
         ticking = [float(tick) for tick in ticks]
@@ -754,14 +728,14 @@ class _Reader:
             self.said.time += f" since {start}"
         step = self._dated(ticking, time)
         if clock is not None:
-            single |= {clock: step} | dict(clocks_of or {})
-            step = single[clock]
+            self.single |= {clock: step} | dict(clocks_of or {})
+            step = self.single[clock]
         # xarray moves the name of bounds from the attributes of a file.
         named = {} if along is None else along.attrs | along.encoding
         bounds = self.file.variables.get(named.get("bounds"))
         if bounds is not None and bounds.size == 2 * len(ticking):
             self.said.span = np.reshape(bounds.values, (-1, 2))[step].astype(float).tolist()
-        return ticking, step, single
+        return ticking, step
 
     def _moment(self) -> Foreign:
         """Return the only time of a file without an axis of time, None without one."""
@@ -816,7 +790,7 @@ class _Reader:
             self._say_level(name, result[name])
         return result
 
-    def _fields(self, single: dict[str, int]) -> dict[str, Foreign]:
+    def _fields(self) -> dict[str, Foreign]:
         """Return the variables of two or three axes, with one value of every other."""
         fields: dict[str, Foreign] = {}
         for key, variable in self.file.data_vars.items():
@@ -827,13 +801,13 @@ class _Reader:
             if name in self.tables:
                 continue
             # Axes of one value, such as a single level, are none of the grid.
-            there = [dim for dim in dims if dim not in single and self.file.sizes[dim] > 1]
+            there = [dim for dim in dims if dim not in self.single and self.file.sizes[dim] > 1]
             named = self._named(there)
             if len(named) not in (2, 3):
                 continue
             if len(named) == 3:
                 self._refuse_table(variable.isel(dict.fromkeys({*dims} - {*there}, 0)))
-            first = {dim: single.get(dim, 0) for dim in dims if dim not in named.values()}
+            first = {dim: self.single.get(dim, 0) for dim in dims if dim not in named.values()}
             others = [dim for dim in there if dim in first]
             if others and not np.isfinite(variable.isel(first).values).any():
                 first |= _with_data(
@@ -888,7 +862,7 @@ class _Reader:
         return letter in ("x", "y") and _in_degrees(name, variable.attrs, strict=True) != ""
 
     def _places(
-        self, dims: Sequence[str], of_field: Sequence[object], single: dict[str, int]
+        self, dims: Sequence[str], of_field: Sequence[object]
     ) -> tuple[tuple[Array, Array] | None, bool]:
         """Return the longitude and the latitude of each node, and whether they are its place.
 
@@ -901,12 +875,12 @@ class _Reader:
         found: dict[str, Array] = {}
         for key, variable in self.file.variables.items():
             name, rest = str(key), {*variable.dims} - {*dims[:2]}
-            inner = len(rest) == variable.ndim - 2 and rest <= {*of_field, *single} - {*dims}
+            inner = len(rest) == variable.ndim - 2 and rest <= {*of_field, *self.single} - {*dims}
             if not inner or variable.dtype.kind not in "iuf":
                 continue
             if self._is_place(name, variable):
                 letter, _ = _letter_of(name, variable.attrs)
-                index = {dim: single.get(str(dim), 0) for dim in rest}
+                index = {dim: self.single.get(str(dim), 0) for dim in rest}
                 rows: Array = np.asarray(variable.isel(index).transpose(dims[1], dims[0]).values)
                 scale = _in_degrees(name, variable.attrs, strict=True) == "radians"
                 # Files may have several, of centres and of corners: the first fits the variable.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -92,9 +91,10 @@ def chart(mesh: pv.DataSet, /, projection: str | None = None) -> pv.DataSet:
         expected = "keywords of PROJ on a sphere, or a reference system and rasterio"
         remedy = "name one, or install vizlight[maps]"
         raise ValueError(_check.message("projection", expected, repr(text), remedy))
-    if around := re.search(r"\+proj=eqearth.*\+lon_0=([-+.\de]+)", text):
-        mesh = globes.centred(mesh, float(around[1]))
-    flat = _moved(mesh, plane, is_plane="+proj=eqc" in text.split())
+    words = projections.keywords(text)
+    if words.get("proj") == "eqearth":
+        mesh = globes.centred(mesh, float(words.get("lon_0", 0.0)))
+    flat = _moved(mesh, plane, is_plane=words.get("proj") == "eqc")
     if not np.isfinite(flat.bounds).all():
         expected = f"places on the map of {text!r}"
         raise ValueError(_check.message("mesh", expected, "some beyond it"))

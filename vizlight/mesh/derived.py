@@ -12,6 +12,7 @@ from vizlight import _check
 from vizlight.mesh import blocks, georeference, meaning, records, sections
 from vizlight.mesh.polylines import by_end
 from vizlight.mesh.subdivision import by_corner
+from vizlight.vtk.arrays import of_components
 from vizlight.vtk.cells import check_whole, connectivity
 from vizlight.vtk.polylines import has_lines_only
 
@@ -179,13 +180,9 @@ def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
     if names in mesh.array_names:
         return meaning.with_named(mesh, names)[0]
     every = names.split(",")
-    if len(every) not in (2, 3):
-        raise ValueError(_check.message("names", "two or three names", repr(names)))
     # The array is attached to a shallow copy, so that the caller's mesh does not get it.
     out = records.averaged(mesh, *every).copy(deep=False)
-    for name in every:
-        _scalars(out, "names", name)
-    out.point_data[names] = meaning.vectors(out, every)
+    out.point_data[names] = of_components(out, "names", every)
     return out
 
 

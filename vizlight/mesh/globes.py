@@ -182,16 +182,27 @@ def closed(mesh: pv.DataSet) -> pv.DataSet:
     if abs(points[0, 0, 0] + georeference.AROUND - points[0, -1, 0] - step) > 0.01 * abs(step):
         return mesh.copy(deep=False)
     wide = np.concatenate([points, points[:, :1] + (georeference.AROUND, 0.0, 0.0)], axis=1)
-    closed = pv.StructuredGrid()
-    closed.dimensions = (columns + 1, rows, 1)
-    closed.points = wide.reshape(-1, 3)
-    for name, values in grid.point_data.items():
-        table = np.asarray(values).reshape(rows, columns, *np.shape(values)[1:])
-        table = np.concatenate([table, table[:, :1]], axis=1)
-        closed.point_data[name] = table.reshape(-1, *table.shape[2:])
-    for name in grid.field_data:
-        closed.field_data[name] = grid.field_data[name]
-    return closed
+    return _of_columns(grid, wide, np.append(np.arange(columns), 0))
+
+
+def _of_columns(
+    mesh: pv.DataSet, points: Array, columns: Indices, cells: Indices | None = None
+) -> pv.StructuredGrid:
+    """Return a grid of columns of another, with their data, at points of shape (rows, M, 3)."""
+    rows = len(points)
+    grid = pv.StructuredGrid()
+    grid.dimensions = (len(columns), rows, 1)
+    grid.points = points.reshape(-1, 3)
+    layers = [(mesh.point_data, grid.point_data, rows, columns)]
+    if cells is not None:
+        layers.append((mesh.cell_data, grid.cell_data, rows - 1, cells))
+    for data, own, count, order in layers:
+        for name, values in data.items():
+            table = np.asarray(values).reshape(count, -1, *np.shape(values)[1:])[:, order]
+            own[name] = table.reshape(-1, *table.shape[2:])
+    for name in mesh.field_data:
+        grid.field_data[name] = mesh.field_data[name]
+    return grid
 
 
 def middle_of(mesh: pv.DataSet) -> float | None:
@@ -249,18 +260,7 @@ def centred(mesh: pv.DataSet, middle: float) -> pv.DataSet:
     taken = np.append(order, order[0])
     points = np.asarray(mesh.points, dtype=np.float64).reshape(rows, columns, 3)[:, taken]
     points[..., 0] = np.append(first[order], first[order[0]] + georeference.AROUND)
-    turned = pv.StructuredGrid()
-    turned.dimensions = (len(taken), rows, 1)
-    turned.points = points.reshape(-1, 3)
-    for name, values in mesh.point_data.items():
-        table = np.asarray(values).reshape(rows, columns, *np.shape(values)[1:])[:, taken]
-        turned.point_data[name] = table.reshape(-1, *table.shape[2:])
-    for name, values in mesh.cell_data.items():
-        table = np.asarray(values).reshape(rows - 1, columns - 1, *np.shape(values)[1:])[:, order]
-        turned.cell_data[name] = table.reshape(-1, *table.shape[2:])
-    for name in mesh.field_data:
-        turned.field_data[name] = mesh.field_data[name]
-    return turned
+    return _of_columns(mesh, points, taken, order)
 
 
 def _surface(mesh: pv.DataSet) -> pv.PolyData:

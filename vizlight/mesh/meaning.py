@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ANATOMY", "MEANING", "AxisScale", "Meaning", "along_grid", "attach", "components",
-    "is_photograph", "line", "metres", "of", "only_vectors", "speed", "usual_unit", "vectors", "ways",
-    "with_named",
+    "is_photograph", "line", "metres", "of", "only_vectors", "speed", "usual_unit", "vectors",
+    "ways", "with_named",
 ]  # fmt: skip
 
 #: Most distinct values of an array of kinds, such as materials or labels.

@@ -70,6 +70,12 @@ class Projection:
     inverse: Callable[[Array], Array]
 
 
+def keywords(text: str) -> dict[str, str]:
+    """Return the keywords of PROJ in a text and their values, but for those that all texts have."""
+    parts = [part.lstrip("+") for part in text.split()]
+    return dict(part.partition("=")[::2] for part in parts if part not in _USUAL)
+
+
 def of_text(text: str) -> Projection | None:
     """Return a projection by its text, None where it is none that can be computed here.
 
@@ -78,8 +84,7 @@ def of_text(text: str) -> Projection | None:
     text : str
         Keywords of PROJ, or a reference system that rasterio reads, such as its WKT.
     """
-    parts = [part.lstrip("+") for part in text.split()]
-    words = dict(part.partition("=")[::2] for part in parts if part not in _USUAL)
+    words = keywords(text)
     kind = words.get("proj", "")
     if kind not in _ON_SPHERE or {*words} - _OF_SPHERE - {"proj", "o_proj"}:
         return _by_proj(text)

@@ -114,8 +114,7 @@ def refined(
     else:
         parents = subdivision.simplices(flat)
     inputs, options, count = part.inputs, part.options, mesh.n_points
-    with engine.observed(None):
-        shading = engine.run(inputs, scene, options)
+    shading = engine.run(inputs, scene, options)
     between = Between(inputs, scene, options)
     most = max(MANY, 2 * count) if most is None else most
     cells, left = refine(between, shading, parents, error, most)

@@ -110,9 +110,7 @@ class Sample:
 
     def light(self, tangents: Array | None, normals: Array | None, repeat: int = 1) -> Array:
         """Return the light of other tangents and normals at the places, shape (M repeat, 3)."""
-        # These runs are the observer's, and none of those that a report of the user counts.
-        with engine.observed(None):
-            result = engine.run(self.inputs(tangents, normals, repeat), self.scene, self.options)
+        result = engine.run(self.inputs(tangents, normals, repeat), self.scene, self.options)
         if result.rgb is not None:
             return np.asarray(result.rgb, np.float64)
         return np.repeat(result.luminance[:, np.newaxis].astype(np.float64), 3, axis=1)

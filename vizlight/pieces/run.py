@@ -29,7 +29,6 @@ from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import required_scene
 from vizlight.shading.options import LightOptions
 from vizlight.shading.results import unlit
-from vizlight.verify import report
 from vizlight.vtk import sides
 from vizlight.vtk.corners import SHARP
 
@@ -216,9 +215,7 @@ def light(
         _spare_sources(parts, path, outputs)
         job, whole_sides = _with_sides(parts, job, targets, work)
         calls = [*zip(parts, [job] * len(parts), targets, whole_sides, strict=True)]
-        done: list[PieceSummary] = []
-        with report.workers(lambda: sum(facts.points for facts in done)):
-            done += work.each(task.light, calls, "light")
+        done: list[PieceSummary] = work.each(task.light, calls, "light")
         full = [(piece, facts) for piece, facts in zip(parts, done, strict=True) if facts.file]
         if not full:
             raise _nothing_found(parts, job, work)

@@ -178,6 +178,36 @@ def value(view: Eye = None, /) -> Scene:
 PRESETS = {name: globals()[name] for name in QUESTIONS}
 
 
+def preset_of(scene: Scene) -> str | None:
+    """Return the question of the preset with the light of a scene, None for other light.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    str or None
+
+    Raises
+    ------
+    TypeError
+        If it is no scene.
+    """
+    _check.instance("scene", scene, Scene)
+    material = scene.material
+    for name in QUESTIONS:
+        preset = PRESETS[name]()
+        preset_material = preset.material
+        # Without a highlight its colour and its power are of no account.
+        alike = (preset_material.ambient, preset_material.diffuse, preset_material.specular) == (
+            material.ambient, material.diffuse, material.specular,
+        )  # fmt: skip
+        if preset.lights == scene.lights and alike:
+            return name
+    return None
+
+
 def optional_scene(scene: AnyScene | None) -> Scene | None:
     """Return the scene that is meant: itself, the preset of a question, or None for None.
 

@@ -6,7 +6,6 @@ memory beyond the output does not grow with the mesh.
 
 from __future__ import annotations
 
-import contextvars
 import dataclasses
 import time
 from typing import TYPE_CHECKING
@@ -14,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check, _compiled, _pool
-from vizlight._context import assigned
 from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.scene.keywords import named
@@ -26,7 +24,6 @@ from vizlight.shading.plan import Plan, decide
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from contextlib import AbstractContextManager
     from typing import TypeAlias
 
     from numpy.typing import ArrayLike, DTypeLike
@@ -35,7 +32,6 @@ if TYPE_CHECKING:
     from vizlight.scene import View
     from vizlight.shading.options import Exponent
 
-    Observer: TypeAlias = Callable[[ShadingInputs, Scene, "Shading", ShadingOptions], None]
     Progress: TypeAlias = Callable[[int, int], None]
 
 __all__ = [
@@ -47,29 +43,10 @@ __all__ = [
     "ShadingInputs",
     "ShadingOptions",
     "depth_range",
-    "observed",
     "plan",
     "run",
     "shade",
 ]
-
-
-_OBSERVER: contextvars.ContextVar[Observer | None] = contextvars.ContextVar(
-    "observer", default=None
-)
-
-
-def observed(observer: Observer | None, /) -> AbstractContextManager[None]:
-    """Call a function after each run of the engine while this context is entered.
-
-    Parameters
-    ----------
-    observer : callable or None
-        Function of the inputs, the scene, the :class:`Shading` and the options of a run; None
-        for none.
-    """
-    _check.function("observer", observer, optional=True)
-    return assigned(_OBSERVER, observer)
 
 
 @named
@@ -325,11 +302,7 @@ def run(
     # The compiler may have failed at the first block, which NumPy then has lit.
     if code is not None and (reason := _compiled.why_not()):
         decided = dataclasses.replace(decided, compiled=False, code=reason)
-    shading = dataclasses.replace(shading, plan=decided, seconds=time.perf_counter() - start)
-    if (observer := _OBSERVER.get()) is not None:
-        # An open report looks at each run, whichever filter began it.
-        observer(inputs, scene, shading, options)
-    return shading
+    return dataclasses.replace(shading, plan=decided, seconds=time.perf_counter() - start)
 
 
 def _step(plan: Plan, inputs: ShadingInputs) -> int:

@@ -1,1 +1,1 @@
-"""How wrong the light is: a second implementation, and the report that compares with it."""
+"""How wrong the light is: a second implementation, and the light between points."""

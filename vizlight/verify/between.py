@@ -159,10 +159,7 @@ class Between:
                 arrays["normals"] = self.turned(vectors["normals"][:, 0], facts, points)
             arrays["points"] = points
             inputs = dataclasses.replace(self.inputs, **arrays)  # type: ignore[arg-type]
-            # Light here measures an error, and is no run that a report counts.
-            with engine.observed(None):
-                lit = engine.run(inputs, self.scene, self.options)
-            values[block] = columns(lit)
+            values[block] = columns(engine.run(inputs, self.scene, self.options))
         return values
 
     def peaks(self, cells: Indices) -> list[Array]:

@@ -2,7 +2,7 @@
 
 :class:`Oracle` writes each formula as its source has it, but for the errata that the pages list,
 for one point at a time, and shares no code with kernels, blocks or plans. :data:`FLOATS` computes
-in float64; :func:`vizlight.report` compares samples with it. The tests make another oracle, of 50
+in float64; :func:`vizlight.check` compares samples with it. The tests make another oracle, of 50
 digits.
 """
 

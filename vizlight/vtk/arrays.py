@@ -163,12 +163,12 @@ def tangents_of(mesh: Dataset, value: object, n: int, *, argument: str = "tangen
         if is_of_cells(mesh, value):
             return _averaged_tangents(mesh, argument, value, n)
         if n == 3 and "," in value and not mesh.GetPointData().HasArray(value):
-            return _of_components(mesh, argument, value.split(","))
+            return of_components(mesh, argument, value.split(","))
     array = array_of(mesh, argument, value, sizes=range(n, n * n, n))
     return _checked_tangents(argument, value, array, n)
 
 
-def _of_components(mesh: Dataset, argument: str, names: Sequence[str]) -> Array:
+def of_components(mesh: Dataset, argument: str, names: Sequence[str]) -> Array:
     """Return the vectors of two or three arrays of one component; of cells their means."""
     columns: list[AnyArray] = []
     for name in names:
