@@ -266,13 +266,8 @@ class _Seen(NamedTuple):
             self.things, chosen.row, chosen.column, self.random, self.eye.noise, share
         )
         beside = [_beside(pixels, self.number, ids, step) for step in ((0, 1), (1, 0))]
-        looked_at = [chosen, *map(pixels.take, beside)]
-        cells, cell = np.unique([some.cell for some in looked_at], return_inverse=True)
-        near = part.near(cells)
-        here, right, up = (
-            sample(near, some._replace(cell=own), camera)
-            for some, own in zip(looked_at, cell.reshape(3, -1), strict=True)
-        )
+        places = sample(part, pixels.take(np.concatenate([ids, *beside])), camera)
+        here, right, up = (places.take(np.arange(len(ids)) + i * len(ids)) for i in range(3))
         course = np.zeros(len(ids))
         if here.tangents is not None and here.has_one_tangent:
             way = courses(camera, pixels.size, here.points, here.tangents[:, 0])

@@ -128,7 +128,9 @@ def sample(part: SeenMesh, pixels: Pixels, camera: pv.Camera) -> Sample:
     camera : pyvista.Camera
         Camera of the picture.
     """
-    cells = part.cells[pixels.cell]
+    names, cell = np.unique(pixels.cell, return_inverse=True)
+    part = part.near(names)
+    cells = part.cells[cell]
     m, s = cells.shape
     ids = cells.ravel()
     corners = rows_of(part.inputs.points, ids).astype(np.float64).reshape(m, s, 3)
@@ -148,7 +150,7 @@ def sample(part: SeenMesh, pixels: Pixels, camera: pv.Camera) -> Sample:
             valid &= np.einsum("ij,ij->i", vectors, vectors) > 0.5
     values = magnitude = None
     if part.values is not None:
-        rows = part.values[pixels.cell if part.flat else ids].astype(np.float64)
+        rows = part.values[cell if part.flat else ids].astype(np.float64)
         values = rows if part.flat else np.asarray(interpolated(rows, places))
     if part.inputs.tangents is not None and part.inputs.tangents.shape[1] == 3:
         magnitude = interpolated(length_rows(rows_of(part.inputs.tangents, ids)), places)
