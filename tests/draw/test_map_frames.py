@@ -227,6 +227,30 @@ def test_a_section_has_numbers_on_two_sides_and_what_they_are(monkeypatch):
     assert (east, north) == pytest.approx((60, 0), abs=12)
 
 
+@pytest.mark.parametrize(
+    ("unit", "long", "expected"),
+    [
+        ("days since 2001-01-01", 1000, ["2001", "2002", "2003"]),
+        ("hours since 2001-01-01 05:00", 12, ["06:00", "09:00", "12:00", "15:00", "2001-01-01"]),
+        ("hours", 10, ["0", "2", "4", "6", "8", "10", "time (hours)"]),
+    ],
+)
+def test_times_of_a_section_are_dates(unit, long, expected, monkeypatch):
+    """Those of a day have this as their title; latitudes are where the section is stretched to."""
+    scales = [meaning.AxisScale("time", unit), meaning.AxisScale("latitude", "degrees", long / 60)]
+    words, _ = framed(scales, (0, long, -long / 2, long / 2), long / 25, monkeypatch)
+    assert [word for word in words if "°" not in word] == expected
+    assert [word for word in words if "°" in word] == [
+        "30°S",
+        "20°S",
+        "10°S",
+        "0°",
+        "10°N",
+        "20°N",
+        "30°N",
+    ]
+
+
 def test_long_lengths_are_in_kilometres(monkeypatch):
     scales = [meaning.AxisScale("distance", "m", 1.0), meaning.AxisScale("height", "m", 0.1)]
     words, _ = framed(scales, (0, 6000, 0, 3000), 200.0, monkeypatch)

@@ -160,6 +160,29 @@ def test_the_time_of_a_mast_is_an_axis(unit, step, read_in, end):
     np.testing.assert_allclose(mesh["t"].reshape(10, 20)[0], 9 * np.arange(20))
 
 
+@pytest.mark.parametrize(
+    ("other", "unit", "titles"),
+    [
+        ("lat", "degrees_north", ["time", "latitude"]),
+        ("lon", "degrees_east", ["longitude", "time"]),
+    ],
+)
+def test_values_over_time_and_one_axis_are_a_section(other, unit, titles):
+    """As in a diagram of Hovmoller time rises along longitudes; a time that is chosen is none."""
+    times = (np.arange(4.0), {"units": "days since 2001-03-01", "calendar": "noleap"})
+    axes = axes_of(time=times, **{other: (np.arange(5.0), {"units": unit})})
+    fields = {"height": (("time", other), np.outer(np.arange(4.0), np.arange(5.0)))}
+    mesh = grid(fields, axes)
+    said = meaning.of(mesh)
+    assert [scale.title for scale in said.section] == titles
+    scale = said.section[titles.index("time")]
+    assert scale.unit == "days since 2001-03-01, noleap calendar"
+    assert mesh["height"][mesh.find_closest_point((3, 3, 0))] == 9
+    assert series.of(mesh) == []
+    # Along time there is no ground for heights.
+    assert vizlight.look(mesh).question == "none"
+
+
 def test_pressure_falls_upward_and_is_in_hectopascals():
     levels = (np.array([100_000.0, 85_000, 50_000]), {"units": "Pa"})
     mesh = grid(

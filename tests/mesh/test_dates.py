@@ -1,5 +1,6 @@
 """Dates and lengths of the times of files."""
 
+import itertools
 import sys
 from datetime import timedelta
 
@@ -86,3 +87,27 @@ def test_dates_are_those_of_cftime(random):
 )  # fmt: skip
 def test_lengths_of_units_of_time(unit, expected):
     assert dates.seconds(unit) == (expected and pytest.approx(expected))
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "unit", "words"),
+    [
+        (0, 30, "hours since 2001-03-05 05:00", ["06:00", "12:00", "18:00", "2001-03-06", "06:00"]),
+        (0, 10, "days since 2001-02-25", ["2001-02-26", "2001-03-01", "2001-03-06"]),
+        (0, 90, "days since 2001-01-15", ["2001-02", "2001-03", "2001-04"]),
+        (0, 36, "months since 2001-03-01", ["2002", "2003", "2004"]),
+        (0, 730, "days since 0001-07-01, 365_day calendar", ["0002", "0003"]),
+        (0, 30, "seconds since 2001-01-01", None),
+        (0, 30, "days", None),
+    ],
+)
+def test_round_dates_are_at_their_times(low, high, unit, words):
+    """Each is at the time whose date it is, at midnight where no time is said."""
+    if "calendar" in unit:
+        pytest.importorskip("cftime")
+    every = [*dates.round_dates(low, high, unit, 4)]
+    assert (words is None and not every) or words in [[word for _, word in each] for each in every]
+    for time, word in itertools.chain(*every):
+        assert low <= time <= high
+        whole = word + "0001-01-01 00:00"[len(word) :] if ":" not in word else word
+        assert dates.date(time, unit).endswith(whole)

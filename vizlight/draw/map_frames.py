@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw.ticks import even_numbers, round_length
-from vizlight.mesh import blocks, charts, georeference, meaning, polylines
+from vizlight.mesh import blocks, charts, dates, georeference, meaning, polylines
 from vizlight.vtk import letters
 from vizlight.vtk.letters import DIGIT, union
 
@@ -253,11 +254,11 @@ def _scales(box: Array, size: float, section: Sequence[meaning.AxisScale]) -> li
     aside = left - (TICK + 3 * GAP + widest) * size
     parts = _sides(box, size, below, beside)
     titles = (
-        (flat, right - left, np.eye(2), ((left + right) / 2, under)),
-        (up, top - bottom, READ_FROM_RIGHT, (aside, (bottom + top) / 2)),
+        (_title(flat, below), right - left, np.eye(2), ((left + right) / 2, under)),
+        (_title(up, beside), top - bottom, READ_FROM_RIGHT, (aside, (bottom + top) / 2)),
     )
-    for scale, long, turn, place in titles:
-        if title := _title(scale):
+    for title, long, turn, place in titles:
+        if title:
             small = min(size, long / letters.width(title))
             points, ids = _word(title, 0.0, 0.0, small, align=0.5)
             parts.append((points @ turn + place, ids))
@@ -270,21 +271,30 @@ def _in_kilometres(scale: meaning.AxisScale, long: float) -> meaning.AxisScale:
     return scale._replace(unit="km", factor=1e3 * scale.factor) if is_far else scale
 
 
-def _title(scale: meaning.AxisScale) -> str:
-    """Return the words for the numbers along a side, none for degrees that say it themselves."""
+def _title(scale: meaning.AxisScale, numbers: Sequence[tuple[float, str]]) -> str:
+    """Return the words for the numbers along a side, none for those that say it themselves."""
     if scale.title in SIGNS:
         return ""
+    words = [word for _, word in numbers] if " since " in scale.unit else []
+    if any(re.match(r"\d{4}", word) for word in words):
+        return ""
+    if any(":" in word for word in words):
+        return dates.date(numbers[0][0] / scale.factor, scale.unit)[:10]
     return f"{scale.title} ({scale.unit})" if scale.unit else scale.title
 
 
 def _numbers(
     low: float, high: float, size: float, scale: meaning.AxisScale, *, is_up: bool
 ) -> list[tuple[float, str]]:
-    """Return the places of round numbers along a side of a section, and the numbers."""
+    """Return the places of round numbers or dates along a side of a section, and their words."""
     first, last = sorted((low / scale.factor, high / scale.factor))
     if scale.title in SIGNS:
-        return ticks(first, last, size, SIGNS[scale.title], is_up=is_up)
-    for numbers in _round_powers(first, last) if scale.is_log else _round(first, last):
+        degrees = size / abs(scale.factor)
+        round_degrees = ticks(first, last, degrees, SIGNS[scale.title], is_up=is_up)
+        return [(scale.factor * value, word) for value, word in round_degrees]
+    of_dates = dates.round_dates(first, last, scale.unit, MOST) if scale.title == "time" else ()
+    others = _round_powers(first, last) if scale.is_log else _round(first, last)
+    for numbers in itertools.chain(of_dates, others):
         places = [(scale.factor * value, word) for value, word in numbers]
         widest = max((letters.width(word) for _, word in places), default=0.0)
         room = size * (DIGIT * ABOVE if is_up else widest * BESIDE)

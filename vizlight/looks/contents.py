@@ -286,16 +286,17 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     if raster and len(described) == 1 and described[0].role == "values":
         only = described[0]
         described = [Named(only.name, "heights", only.of_cells, only.distinct, only.low, only.high)]
+    is_section = bool(meaning.of(mesh).section)
     described = [
         replace(array, role="values")
-        if array.role == "heights" and not _is_length(mesh, array.name)
+        if array.role == "heights" and (is_section or not _is_length(mesh, array.name))
         else array
         for array in described
     ]
     joined = [
         Named(",".join(names), "vectors", names[0] not in mesh.point_data)
         # On a vertical section one of them points out of the picture.
-        for names in ([] if meaning.of(mesh).section else meaning.components(mesh))
+        for names in ([] if is_section else meaning.components(mesh))
         if ",".join(names) not in mesh.array_names and not all(map(_is_table, names))
     ]
     active = (mesh.active_scalars_name, mesh.active_vectors_name)

@@ -111,8 +111,9 @@ def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
     toward = tuple(float(i == axis) * (-1.0 if axis == 1 else 1.0) for i in range(3))
     up: Vector = (0.0, 1.0, 0.0) if axis == 2 else (0.0, 0.0, 1.0)
     words = "from above, north up" if axis == 2 else f"along {'xyz'[axis]}"
-    if meaning.of(mesh).section:
-        return Viewpoint(toward, up, True, "with height up")
+    if section := meaning.of(mesh).section:
+        upward = {"time": "time", "latitude": "north"}.get(section[1].title, "height")
+        return Viewpoint(toward, up, True, f"with {upward} up")
     right = np.cross(up, toward)
     points = _some(np.asarray(mesh.points, dtype=np.float64))
     flat = np.stack([points @ right, points @ np.asarray(up)], axis=1)

@@ -379,10 +379,10 @@ class _Reader:
         ticking, step = self._step(time)
         notes = [*self.said.notes]
         self.single |= self._chosen(at)
-        clock = "" if time is not None else self._clock_of_section({*at})
+        clock, letter = ("", "") if time is not None else self._clock_of_section({*at})
         is_drawn = clock != "" and not self._fields()
         if is_drawn:
-            self.letters[clock] = "x", self.letters[clock][1]
+            self.letters[clock] = letter, self.letters[clock][1]
             self.said.span = []
             del self.single[clock]
         mesh = self._mesh()
@@ -394,20 +394,21 @@ class _Reader:
         is_step = (len(ticking) > 1 or self.said.time) and not (of_track or is_drawn)
         return series.marked(mesh, ticking, step) if is_step else mesh
 
-    def _clock_of_section(self, chosen: set[str]) -> str:
-        """Return the axis of time of values that have it and heights alone, as those of a mast.
+    def _clock_of_section(self, chosen: set[str]) -> tuple[str, str]:
+        """Return the axis of time of values that have it and one other, and where it is drawn.
 
-        Empty where there are none, or where one value is chosen along it.
+        It is x beside heights or latitudes, and y beside longitudes, as in diagrams of Hovmöller;
+        empty where there are none, or where one value is chosen along it.
         """
         if self.topology is not None or self.listed is not None:
-            return ""
+            return "", ""
         for variable in self.file.data_vars.values():
             sizes = {str(dim): int(size) for dim, size in variable.sizes.items()}
             dims = [dim for dim, size in sizes.items() if size > 1 and dim not in chosen]
             by_letter = {self.letters[dim][0]: dim for dim in dims}
-            if len(dims) == 2 and by_letter.keys() == {"t", "z"}:
-                return by_letter["t"]
-        return ""
+            if len(dims) == len(by_letter) == 2 and "t" in by_letter and "" not in by_letter:
+                return by_letter["t"], "y" if "x" in by_letter else "x"
+        return "", ""
 
     def _join_faces(self, at: Mapping[str, object]) -> None:
         """Put the cells on the faces of a cube in one list, if none of the faces is chosen."""
@@ -489,9 +490,10 @@ class _Reader:
         self.said.axes = [
             f"{letter} {axis.words}" for letter, axis in zip("xyz", axes, strict=False)
         ]
-        if len(dims) > 2 or named.keys() != {"x", "y"}:
+        is_map = {"x", "y"} <= named.keys() and "time" not in {axis.kind for axis in axes}
+        if len(dims) > 2 or not is_map:
             self.said.scales = [axis.scale for axis in axes]
-        if {"x", "y"} <= named.keys():
+        if is_map:
             self._set_unit(grid, axes, mapped=mapped)
             kind = axes[0].kind
             # Axes by number are those of a model's plane, if each point has a place of its own.
@@ -987,7 +989,9 @@ class _Reader:
             _set_ticks(axis, metres * ticks, "length")
         elif " since " in unit:
             ticks, unit = self._since(ticks)
-            axis.words, axis.scale = f"time in {unit}{by}", meaning.AxisScale("time", unit)
+            axis.words, calendar = f"time in {unit}{by}", self.said.time.partition(", ")[2]
+            unit += f", {calendar}" if calendar and " since " in unit else ""
+            axis.scale = meaning.AxisScale("time", unit)
             _set_ticks(axis, ticks, "time")
         elif letter in ("x", "y") and (scanned := re.fullmatch(_ANGLES, unit)):
             # Such an angle times the height of the satellite is a length in PROJ's plane.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import math
 import re
 from datetime import timedelta
@@ -10,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
-__all__ = ["date", "seconds"]
+__all__ = ["date", "round_dates", "seconds"]
 
 #: Days of a year, the mean of 400 years.
 _YEAR = 365.2425
@@ -23,6 +24,20 @@ _SECONDS = {
     "h|hrs?|hours?": 3600.0, "d|days?": 86_400.0, "weeks?": 604_800.0,
     "mons?|months?": _YEAR / 12 * 86_400, "y|yrs?|years?": _YEAR * 86_400,
 }  # fmt: skip
+#: Lengths in seconds between round dates; steps of their years and months, days of a month, and
+#: steps of minutes; and letters of their words.
+_ROUND = (
+    *((60.0 * n, (1, 1, range(1, 32), n), 10) for n in (1, 5, 15, 30, 60, 180, 360, 720)),
+    *((86_400.0 * n, (1, 1, range(1, 32 - n * (n > 1), n), 1440), 10) for n in (1, 2, 5, 10)),
+    *((_YEAR * 7200 * n, (1, n, (1,), 1440), 7) for n in (1, 2, 3, 6)),
+    *(
+        (_YEAR * 86_400 * n, (n, 12, (1,), 1440), 4)
+        for p in range(4)
+        for n in (10**p, 2 * 10**p, 5 * 10**p)
+    ),
+)
+#: Parts of a range in which the time of a date is told.
+_FINEST = 1 << 30
 #: Unit of times that are dates themselves, such as 20010215.5.
 _ABSOLUTE = "day as %Y%m%d"
 #: Unit and first day of times, such as "hours since 1900-1-1T6:00:00.0 +1:00".
@@ -81,6 +96,51 @@ def date(time: float, unit: str) -> str:
     except (ImportError, ValueError, OverflowError):
         return ""
     return f"{when.year:04}-{when.month:02}-{when.day:02} {when.hour:02}:{when.minute:02}"
+
+
+def round_dates(low: float, high: float, unit: str, most: int) -> Iterator[list[tuple[float, str]]]:
+    """Yield round dates within a range of times and their words, ever fewer; none without a day.
+
+    Words are those of a year, a month or a day, or of a time of a day, at midnight of the day.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends of the range.
+    unit : str
+        Unit and calendar of the times, as for :func:`date`.
+    most : int
+        Largest number of dates.
+    """
+    first, last = date(low, unit), date(high, unit)
+    long = (seconds(unit) or 0.0) * (high - low)
+    for length, (years, months, days, minutes), digits in _ROUND if first and last else ():
+        if long > (most + 1) * length:
+            continue
+        texts = [
+            f"{day} {minute // 60:02}:{minute % 60:02}"
+            for year in range(int(first[:4]), int(last[:4]) + 1)
+            if year % years == 0
+            for day in (f"{year:04}-{m:02}-{d:02}" for m in range(1, 13, months) for d in days)
+            if first[:10] <= day <= last[:10]
+            for minute in range(0, 1440, minutes)
+        ]
+        times = [(_when(text, low, high, unit), text) for text in texts if first <= text <= last]
+        words = [
+            (time, text[:digits] if text.endswith("00:00") else text[11:])
+            for time, text in times
+            # A day that a month has not is the next one.
+            if date(time, unit) == text
+        ]
+        if len(words) > 1:
+            yield words
+
+
+def _when(text: str, low: float, high: float, unit: str) -> float:
+    """Return the first time of a range that is not before a date, to a part of a minute."""
+    step = (high - low) / _FINEST
+    at = bisect.bisect_left(range(_FINEST), text, key=lambda i: date(low + i * step, unit))
+    return low + at * step
 
 
 def _minute(time: float, parts: Sequence[str], calendar: str) -> np.datetime64 | None:
