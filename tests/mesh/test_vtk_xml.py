@@ -1,6 +1,8 @@
 """Files of VTK's XML that are cut, or hold other numbers than they state, are refused."""
 
+import base64
 import re
+import struct
 
 import pytest
 import pyvista as pv
@@ -80,7 +82,7 @@ def test_damaged_pieces_of_grids(tmp_path):
     assert vizlight.read(tmp_path / "a.pvtr").n_points == 60
     whole = (tmp_path / "a.vtr").read_bytes()
     (tmp_path / "a.vtr").write_bytes(whole.replace(b"LittleEndian", b"BigEndian"))
-    with pytest.raises(FileError, match=r"a\.vtr' .*Error reading compression header"):
+    with pytest.raises(FileError, match=r"a\.vtr': .* an array of 16777216 blocks"):
         vizlight.read(tmp_path / "a.pvtr")
 
 
@@ -103,3 +105,31 @@ def test_arrays_with_more_numbers_than_cells(form, tmp_path):
             path.write_bytes(path.read_bytes().replace(b'Cells="6"', b'Cells="4"'))
             reason = "the array 'v' has 18 numbers for 12"
             assert short_files.missing_part(path) == reason
+
+
+@pytest.mark.parametrize("form", ["ascii", "binary", "base64", "raw"])
+@pytest.mark.parametrize("wide", [True, False])
+def test_cells_that_end_beyond_their_corners(form, wide, tmp_path):
+    """VTK makes room for that many, and ends the process where there is none."""
+    path = tmp_path / "a.vtu"
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(pv.ImageData(dimensions=(4, 3, 2)).cast_to_unstructured_grid())
+    writer.SetFileName(str(path))
+    writer.SetDataMode({"ascii": 0, "binary": 1}.get(form, 2))
+    writer.SetEncodeAppendedData(form == "base64")
+    writer.SetHeaderTypeToUInt64() if wide else writer.SetHeaderTypeToUInt32()
+    writer.SetCompressorTypeToNone()
+    writer.Write()
+    assert short_files.missing_part(path) == ""
+    rows = [[8, 16, 24, 32, 40, last] for last in (48, 1 << 40)]
+    parts = [struct.pack("<6q", *row) for row in rows]
+    if form == "ascii":
+        parts = [" ".join(map(str, row)).encode() for row in rows]
+    elif form != "raw":
+        head = (48).to_bytes(8 if wide else 4, "little")
+        parts = [base64.b64encode(head + part) for part in parts]
+    content = path.read_bytes()
+    assert content.count(parts[0]) == 1
+    path.write_bytes(content.replace(*parts))
+    reason = f"the cells have 48 corners, and end at {1 << 40}"
+    assert short_files.missing_part(path) == reason
