@@ -439,6 +439,10 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
     size = dimensions(mesh)
     if min(size, default=1) < 0 or mesh.n_points > MOST_POINTS:
         raise FileError(f"no points: the dimensions are {size}")
+    if isinstance(mesh, pv.RectilinearGrid):
+        axes = mesh.GetXCoordinates(), mesh.GetYCoordinates(), mesh.GetZCoordinates()
+        if most := max(axis.GetNumberOfComponents() for axis in axes) - 1:
+            raise FileError(f"an axis has {most + 1} numbers for each place")
     if blocks.is_too_far(mesh):
         raise FileError(f"points beyond {_check.FARTHEST:g}, the largest coordinate")
     # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines, and

@@ -4,6 +4,7 @@ import base64
 import re
 import struct
 
+import numpy as np
 import pytest
 import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
@@ -69,6 +70,20 @@ def test_pieces_cover_the_whole(tmp_path, suffix, binary):
         (b"", "its extents are no six numbers"),
     ):
         path.write_bytes(re.sub(rb'WholeExtent="0', b'WholeExtent="' + number, whole, count=1))
+        with pytest.raises(FileError, match=reason):
+            vizlight.read(path)
+
+
+def test_arrays_of_grids_with_other_numbers(tmp_path):
+    path, grid = tmp_path / "a.vtr", GRIDS["vtr"].copy()
+    grid["pair"] = np.zeros((60, 2))
+    grid.save(path, binary=False)
+    whole = path.read_text()
+    for pattern, damaged, reason in (
+        (' NumberOfComponents="2"', "", "'pair' has 120 numbers for 60"),
+        (r">\s+0 1 2 3 4", ' NumberOfComponents="2"> 0 1 2 3 4 0 1 2 3 4', "an axis has 2 numbers"),
+    ):
+        path.write_text(re.sub(pattern, damaged, whole))
         with pytest.raises(FileError, match=reason):
             vizlight.read(path)
 

@@ -66,6 +66,12 @@ def _too_long(text: mmap.mmap | bytes) -> Iterator[str]:
         elif name == "Piece":
             counts = {key[8:]: int(word) for key, word in words.items() if key in _NUMBERS}
             counts.setdefault("Cells", sum(counts.get(kind, 0) for kind in _KINDS))
+            if extent := [int(word) for word in words.get("Extent", "").split()]:
+                sizes = [
+                    last - first for first, last in zip(extent[::2], extent[1::2], strict=True)
+                ]
+                counts["Points"] = math.prod(size + 1 for size in sizes)
+                counts["Cells"] = math.prod(max(size, 1) for size in sizes)
         elif name != "DataArray":
             # Keys of information stand within arrays.
             section = section if name == "InformationKey" else name
