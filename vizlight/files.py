@@ -136,7 +136,7 @@ def read(
     at: Mapping[str, object] | None = None,
     nodata: float | None = None,
 ) -> pv.DataSet:
-    """Read a mesh from a file, in this process: a file that is damaged on purpose may end it.
+    """Read a mesh from a file; one that is damaged does not end this process.
 
     These are files that PyVista reads, tractograms, rasters, netCDF grids, molecules and crystals
     (.pdb, .cif, .xyz), maps of densities (.mrc, .ccp4), and tables (.csv) of points that name
@@ -200,7 +200,10 @@ def read(
 
     Notes
     -----
-    Readers are libraries in C and C++; the command line reads in a process of its own. A file is
+    Readers are libraries in C and C++, which damaged files may end. Another process reads a file
+    first, within 15 s and 0.5 s for each megabyte: a fork, or a helper that is kept, on other
+    systems than Linux and where threads run. So files are read twice, but those of ``GUARDED``
+    formats, and by the command line, which has a process of its own. A file is
     refused where its reader gives an error or a warning, and where it is shorter than its format
     states: .stl, netCDF, HDF5, TIFF, VTK's XML and legacy text. Threads may read at the same time:
     each thread gets the messages of its own reader, and no stream is redirected. Libraries other
@@ -323,6 +326,7 @@ def _check_before(
     if _trials.are_needed():
         if path.suffix.lower() in GUARDED and not overlays:
             return
+        foreign_files.load(path)
         tried = functools.partial(_refusal, path, time, overlays, at, nodata, whole=whole)
         if refusal := _trials.refusal(tried, path, _size(path)):
             raise FileError(refusal)
@@ -435,6 +439,10 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
     size = dimensions(mesh)
     if min(size, default=1) < 0 or mesh.n_points > MOST_POINTS:
         raise FileError(f"no points: the dimensions are {size}")
+    if isinstance(mesh, pv.RectilinearGrid):
+        axes = mesh.GetXCoordinates(), mesh.GetYCoordinates(), mesh.GetZCoordinates()
+        if most := max(axis.GetNumberOfComponents() for axis in axes) - 1:
+            raise FileError(f"an axis has {most + 1} numbers for each place")
     if blocks.is_too_far(mesh):
         raise FileError(f"points beyond {_check.FARTHEST:g}, the largest coordinate")
     # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines, and

@@ -41,6 +41,16 @@ def archive(*, method=0):
     return bytes(data)
 
 
+def scan(*, minor=2, records=0, kind=3, count=2, extended=0):
+    """Return points of LAS, or the begin of such a file."""
+    head = bytearray(375 if minor == 4 else 227)
+    head[:4], head[24:26] = b"LASF", bytes((1, minor))
+    struct.pack_into("<HIIBHI", head, 94, len(head), len(head), records, kind, 34, count)
+    if minor == 4:
+        struct.pack_into("<QIQ", head, 235, len(head) + 68, extended, count)
+    return bytes(head) + bytes(68)
+
+
 AVS = b"3 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 0 tri 1 2 3\n"
 
 
@@ -112,6 +122,9 @@ WRONG = {
         b'<GIFTI NumberOfDataArrays="2"><DataArray Dimensionality="1"/></GIFTI>',
         "1 of 2 arrays are there",
     ),
+    "records": ("a.las", scan(records=1 << 30), "records end after byte 227, where its points"),
+    "points of a scan": ("a.las", scan(count=3), "295 of 329 bytes are there"),
+    "later records": ("a.laz", scan(minor=4, kind=131, extended=2), "443 of 563 bytes are there"),
     "counts": ("a.avs", AVS[10:], "its first line is no five counts"),
     "no line": ("a.avs", AVS[:30], "4 of 5 lines of points and cells"),
     "no corner": ("a.avs", AVS[:-10], "a cell is not whole"),

@@ -1,7 +1,10 @@
 """Files of VTK's XML that are cut, or hold other numbers than they state, are refused."""
 
+import base64
 import re
+import struct
 
+import numpy as np
 import pytest
 import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
@@ -71,6 +74,20 @@ def test_pieces_cover_the_whole(tmp_path, suffix, binary):
             vizlight.read(path)
 
 
+def test_arrays_of_grids_with_other_numbers(tmp_path):
+    path, grid = tmp_path / "a.vtr", GRIDS["vtr"].copy()
+    grid["pair"] = np.zeros((60, 2))
+    grid.save(path, binary=False)
+    whole = path.read_text()
+    for pattern, damaged, reason in (
+        (' NumberOfComponents="2"', "", "'pair' has 120 numbers for 60"),
+        (r">\s+0 1 2 3 4", ' NumberOfComponents="2"> 0 1 2 3 4 0 1 2 3 4', "an axis has 2 numbers"),
+    ):
+        path.write_text(re.sub(pattern, damaged, whole))
+        with pytest.raises(FileError, match=reason):
+            vizlight.read(path)
+
+
 def test_damaged_pieces_of_grids(tmp_path):
     GRIDS["vtr"].save(tmp_path / "a.vtr")
     head = '<VTKFile type="PRectilinearGrid"><PRectilinearGrid WholeExtent="0 3 0 2 0 4">'
@@ -80,7 +97,7 @@ def test_damaged_pieces_of_grids(tmp_path):
     assert vizlight.read(tmp_path / "a.pvtr").n_points == 60
     whole = (tmp_path / "a.vtr").read_bytes()
     (tmp_path / "a.vtr").write_bytes(whole.replace(b"LittleEndian", b"BigEndian"))
-    with pytest.raises(FileError, match=r"a\.vtr' .*Error reading compression header"):
+    with pytest.raises(FileError, match=r"a\.vtr': .* an array of 16777216 blocks"):
         vizlight.read(tmp_path / "a.pvtr")
 
 
@@ -103,3 +120,31 @@ def test_arrays_with_more_numbers_than_cells(form, tmp_path):
             path.write_bytes(path.read_bytes().replace(b'Cells="6"', b'Cells="4"'))
             reason = "the array 'v' has 18 numbers for 12"
             assert short_files.missing_part(path) == reason
+
+
+@pytest.mark.parametrize("form", ["ascii", "binary", "base64", "raw"])
+@pytest.mark.parametrize("wide", [True, False])
+def test_cells_that_end_beyond_their_corners(form, wide, tmp_path):
+    """VTK makes room for that many, and ends the process where there is none."""
+    path = tmp_path / "a.vtu"
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(pv.ImageData(dimensions=(4, 3, 2)).cast_to_unstructured_grid())
+    writer.SetFileName(str(path))
+    writer.SetDataMode({"ascii": 0, "binary": 1}.get(form, 2))
+    writer.SetEncodeAppendedData(form == "base64")
+    writer.SetHeaderTypeToUInt64() if wide else writer.SetHeaderTypeToUInt32()
+    writer.SetCompressorTypeToNone()
+    writer.Write()
+    assert short_files.missing_part(path) == ""
+    rows = [[8, 16, 24, 32, 40, last] for last in (48, 1 << 40)]
+    parts = [struct.pack("<6q", *row) for row in rows]
+    if form == "ascii":
+        parts = [" ".join(map(str, row)).encode() for row in rows]
+    elif form != "raw":
+        head = (48).to_bytes(8 if wide else 4, "little")
+        parts = [base64.b64encode(head + part) for part in parts]
+    content = path.read_bytes()
+    assert content.count(parts[0]) == 1
+    path.write_bytes(content.replace(*parts))
+    reason = f"the cells have 48 corners, and end at {1 << 40}"
+    assert short_files.missing_part(path) == reason

@@ -1,8 +1,10 @@
 """Each thread gets its own messages of VTK."""
 
+import logging
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from pyvista.core.utilities.observers import Observer
 from vtkmodules.vtkCommonCore import vtkOutputWindow
 
 from vizlight import files
@@ -27,3 +29,13 @@ def test_what_vtk_says_is_told_apart_by_thread(tmp_path, capfd):
     assert (errors, inner) == (["said here"], ["said within"])
     assert capfd.readouterr().err == "said elsewhere\n"
     assert vtkOutputWindow.GetInstance() is window
+
+
+def test_what_pyvista_repeats_is_no_record(caplog):
+    with messages.captured_errors():
+        Observer().log_message("ERROR", "of VTK")
+        logging.getLogger("mine").error("another")
+        with ThreadPoolExecutor(1) as pool:
+            pool.submit(Observer().log_message, "ERROR", "elsewhere").result()
+    Observer().log_message("WARNING", "after")
+    assert [record.message for record in caplog.records] == ["another", "elsewhere", "after"]

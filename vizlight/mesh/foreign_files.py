@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import itertools
 import re
@@ -75,6 +76,8 @@ PACKAGES = {
 )  # fmt: skip
 #: Name under which a package is imported, where that is another.
 MODULES = {"trx-python": "trx.trx_file_memmap"}
+#: Modules that a package loads when it reads a file.
+_TOGETHER = {"xarray": ("xarray", "cf_xarray", "netCDF4", "dask")}
 #: Place of the number of columns in the header of an elevation model, and the least that VTK reads.
 _DEM_COLUMNS, _DEM_LEAST = slice(858, 864), 100
 
@@ -93,6 +96,14 @@ def missing(path: Path) -> str:
             f"run pip install '{f'vizlight[{extra}]' if extra else package}'"
         )
     return ""
+
+
+def load(path: Path) -> None:
+    """Load the packages that read a file, which forks of this process then need not do again."""
+    package, _ = PACKAGES.get(path.suffix.lower(), ("", ""))
+    for name in _TOGETHER.get(package, (MODULES.get(package, package),) if package else ()):
+        with contextlib.suppress(Exception):  # whoever reads the file says that it is missing
+            importlib.import_module(name)
 
 
 def way_out(path: Path) -> str:

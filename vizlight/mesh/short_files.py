@@ -156,6 +156,26 @@ def _stl(file: BinaryIO) -> str:
     )
 
 
+#: Bytes of a record of LAS, and of one that stands after the points.
+_LAS_RECORD, _LAS_EXTENDED = 54, 60
+
+
+def _las(file: BinaryIO) -> str:
+    """Compare the counts of points and records of a scan, which laspy reads past the end."""
+    head = file.read(255)
+    if not head.startswith(b"LASF"):
+        return ""  # its reader says so
+    size, start, records, kind, width, count = struct.unpack_from("<HIIBHI", head, 94)
+    if size + _LAS_RECORD * records > start:
+        return f"its {records} records end after byte {start}, where its points begin"
+    least = start
+    if head[25] >= 4:
+        first, extended, count = struct.unpack_from("<QIQ", head, 235)
+        least = max(least, first + _LAS_EXTENDED * extended if extended else 0)
+    # The highest bits stand for points that are packed.
+    return file_parts.missing_bytes(file, max(least, start + width * count * (kind < 64)))
+
+
 def _png(file: BinaryIO) -> str:
     """Check the parts of a picture, each of which has a check sum."""
     if file.read(8) != b"\x89PNG\r\n\x1a\n":
@@ -407,7 +427,7 @@ _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     ".vtm": vtk_xml.missing_block, **dict.fromkeys((".gz", ".mgz"), _gzip),
     **dict.fromkeys((".hdf", ".vtkhdf"), _vtkhdf),
     **dict.fromkeys((".glb", ".gltf"), gltf.missing_part),
-    **dict.fromkeys((".avs", ".inp"), _avs),
+    **dict.fromkeys((".avs", ".inp"), _avs), **dict.fromkeys((".las", ".laz"), _las),
     **dict.fromkeys((".grib", ".grib2", ".grb", ".grb2"), _grib),
     **dict.fromkeys((".nrrd", ".nhdr"), _nrrd),
     **dict.fromkeys((".mha", ".mhd"), _meta),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import re
 import sys
 import threading
@@ -67,6 +68,7 @@ class _Messages:
                 vtkOutputWindow.SetInstance(listening)
                 # VTK's logger would print each message to standard error beside that.
                 vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+                logging.getLogger().addFilter(self._is_of_others)
             # One thread may listen in several contexts: the innermost hears.
             self._heard.setdefault(thread, []).append(errors)
         try:
@@ -82,6 +84,11 @@ class _Messages:
                     self._replaced = None
                     vtkOutputWindow.SetInstance(window)
                     vtkLogger.SetStderrVerbosity(verbosity)
+                    logging.getLogger().removeFilter(self._is_of_others)
+
+    def _is_of_others(self, record: logging.LogRecord) -> bool:
+        """Return whether a record is none by which PyVista repeats the messages of this thread."""
+        return record.module != "observers" or threading.get_ident() not in self._heard
 
     @calldata_type(VTK_STRING)  # type: ignore[no-untyped-call, untyped-decorator]
     def _note(self, _window: object, event: str, text: str | None) -> None:
