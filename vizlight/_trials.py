@@ -2,7 +2,7 @@
 
 Libraries in C end the process at some damaged files, or read them without end. In Python a fork of
 this process reads a file first. Where threads run a fork is not safe, and other systems than Linux
-have none that is: there a process is started at the first file, and kept for those that follow.
+have none that is: then a process is started at the first file, and kept for those that follow.
 """
 
 from __future__ import annotations

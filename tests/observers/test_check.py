@@ -78,21 +78,21 @@ FILTERS = {
 
 @pytest.mark.parametrize("name", FILTERS)
 def test_every_filter(name, surface):
-    told = vizlight.check(FILTERS[name](surface), sample=40)
-    assert told.runs
-    assert told.points > 0
-    assert told.bytes > 0
-    assert told.seconds > 0
-    for run in told.runs:
+    report = vizlight.check(FILTERS[name](surface), sample=40)
+    assert report.runs
+    assert report.points > 0
+    assert report.bytes > 0
+    assert report.seconds > 0
+    for run in report.runs:
         shadow = run.terms == ("t",)
         limit = 3e-3 if shadow else 3e-6
         assert run.sample > 0
         assert 0 <= run.rms <= run.error < limit
         assert run.disagreed == 0
         assert shadow or run.nanoseconds > 0
-    said = str(told)
-    assert f"{told.points} points lit in {len(told.runs)} run(s)" in said
-    assert "computed again one by one in float64" in said
+    words = str(report)
+    assert f"{report.points} points lit in {len(report.runs)} run(s)" in words
+    assert "computed again one by one in float64" in words
 
 
 SHADOWS = {
@@ -128,17 +128,17 @@ def test_every_shadow_of_every_light(name, monkeypatch):
 
 def test_a_day_is_told_whole():
     day = vizlight.relief_day(terrain(), latitude=46, day=172, hours=[2, 9, 12, 15], depth=0.5)
-    told = vizlight.check(day, name="t")
-    assert told.points == day.n_points
-    assert told.bytes == day["t"].nbytes + day["t_mean"].nbytes
-    assert told.error < 4e-3
+    report = vizlight.check(day, name="t")
+    assert report.points == day.n_points
+    assert report.bytes == day["t"].nbytes + day["t_mean"].nbytes
+    assert report.error < 4e-3
 
 
 def test_points_of_a_lit_shadow_count_once():
     lit = relief_shadow(terrain(), SUN, depth=0.5, lit=True)
-    told = vizlight.check(lit)
-    assert len(told.runs) == 2
-    assert told.points == lit.n_points
+    report = vizlight.check(lit)
+    assert len(report.runs) == 2
+    assert report.points == lit.n_points
 
 
 @pytest.mark.parametrize("levels", [12, 0.02])
@@ -147,11 +147,11 @@ def test_points_of_a_lit_shadow_count_once():
 def test_bands_are_one_run(what, specular, levels):
     material = shiny(diffuse=0.5, specular=specular, color="tomato")
     scene = far((1, 1, 1), (0, 0, 1), material)
-    found = vizlight.isoluminance(what, scene, levels=levels)
-    (run,) = vizlight.check(found).runs
-    assert run.points == found["bands"].n_points
-    assert run.bound == found["bands"].field_data["luminance_error"][0]
-    assert f"stated bound of the error {run.bound:.2g}; 0 invalid" in str(vizlight.check(found))
+    contours = vizlight.isoluminance(what, scene, levels=levels)
+    (run,) = vizlight.check(contours).runs
+    assert run.points == contours["bands"].n_points
+    assert run.bound == contours["bands"].field_data["luminance_error"][0]
+    assert f"stated bound of the error {run.bound:.2g}; 0 invalid" in str(vizlight.check(contours))
 
 
 def test_colours_are_checked_too(surface, monkeypatch):
@@ -189,21 +189,21 @@ def test_invalid_points_are_counted(random):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         lit = illuminate(mesh, PLAIN, tangents="V")
-    told = vizlight.check(lit)
-    assert told.invalid == 9
-    assert told.runs[0].sample == 41
-    assert told.runs[0].disagreed == 0
-    assert "9 invalid" in str(told)
+    report = vizlight.check(lit)
+    assert report.invalid == 9
+    assert report.runs[0].sample == 41
+    assert report.runs[0].disagreed == 0
+    assert "9 invalid" in str(report)
 
 
 def test_blocks_without_points_or_a_sample(surface):
     lit = illuminate(pv.MultiBlock({"surface": surface, "empty": pv.PolyData()}), SCENE)
-    told = vizlight.check(lit, sample=0)
-    assert [run.points for run in told.runs] == [surface.n_points, 0]
-    assert np.isnan(told.error)
-    assert np.isnan(told.runs[1].nanoseconds)
-    assert told.terms == ("ambient", "diffuse", "specular")
-    assert "no sample: error unknown" in str(told)
+    report = vizlight.check(lit, sample=0)
+    assert [run.points for run in report.runs] == [surface.n_points, 0]
+    assert np.isnan(report.error)
+    assert np.isnan(report.runs[1].nanoseconds)
+    assert report.terms == ("ambient", "diffuse", "specular")
+    assert "no sample: error unknown" in str(report)
 
 
 def test_bad_samples():
@@ -261,8 +261,8 @@ def test_the_time_is_that_of_the_light(monkeypatch):
     light = oracle.light
     monkeypatch.setattr(oracle, "light", lambda *a, **k: time.sleep(2e-3) or light(*a, **k))
     start = time.perf_counter()
-    told = vizlight.check(lit, sample=50)
-    assert told.seconds < time.perf_counter() - start - 0.1
+    report = vizlight.check(lit, sample=50)
+    assert report.seconds < time.perf_counter() - start - 0.1
 
 
 def test_light_above_one_is_counted():
@@ -272,10 +272,10 @@ def test_light_above_one_is_counted():
     lit = illuminate(sphere, bright)
     above = int(np.count_nonzero(lit["luminance"] > 1))
     assert 0 < above < sphere.n_points
-    told = vizlight.check(pv.MultiBlock([lit, illuminate(sphere, red)]))
-    assert [run.bright for run in told.runs] == [above, 0]
-    assert told.bright == above
-    assert f"{above} points are brighter than 1, which a picture shows as 1" in str(told)
+    report = vizlight.check(pv.MultiBlock([lit, illuminate(sphere, red)]))
+    assert [run.bright for run in report.runs] == [above, 0]
+    assert report.bright == above
+    assert f"{above} points are brighter than 1, which a picture shows as 1" in str(report)
 
 
 def test_a_shadow_and_bands_say_what_they_are_compared_with():
@@ -313,9 +313,9 @@ def test_files_and_pieces_are_checked_as_meshes_are(tmp_path):
     pv.Icosphere(nsub=2).save(tmp_path / "a.vtp")
     scene = Scene(view=View(direction=(0, 0, 1)))
     vizlight.pieces.light(tmp_path / "a.vtp", scene, out=tmp_path / "lit.pvtp")
-    told = vizlight.check(vizlight.read(tmp_path / "lit.pvtp"))
-    assert told.points == 162
-    assert told.error < 1e-6
+    report = vizlight.check(vizlight.read(tmp_path / "lit.pvtp"))
+    assert report.points == 162
+    assert report.error < 1e-6
 
 
 @pytest.mark.parametrize(

@@ -54,11 +54,11 @@ def test_the_error_is_that_of_many_places(ball):
 
 def test_words(ball):
     lit = illuminate(ball, SCENE, normals="normal")
-    said = str(vizlight.check(lit))
-    assert "rounding error" in said
-    assert "all 1522 points computed again one by one in float64" in said
-    assert "at 4096 random places; 95 %: fewer than 0.08 % of the places are worse" in said
-    assert "are off by more than 1/255; vizlight.refine to 1/255 leaves only places where" in said
+    words = str(vizlight.check(lit))
+    assert "rounding error" in words
+    assert "all 1522 points computed again one by one in float64" in words
+    assert "at 4096 random places; 95 %: fewer than 0.08 % of the places are worse" in words
+    assert "are off by more than 1/255; vizlight.refine to 1/255 leaves only places where" in words
     fine = str(vizlight.check(refine(ball, SCENE, normals="normal")))
     assert "vizlight.refine" not in fine
     part = str(vizlight.check(lit, sample=100))
@@ -85,9 +85,9 @@ def test_a_fault_in_one_of_a_thousand_points_is_found(monkeypatch):
     monkeypatch.setattr(engine, "shade_block", wrong)
     lit = illuminate(mesh, SCENE)
     for seed in range(3):
-        found = vizlight.check(lit, seed=seed)
-        assert found.error == pytest.approx(0.01, rel=1e-3)
-    run = found.runs[0]
+        report = vizlight.check(lit, seed=seed)
+        assert report.error == pytest.approx(0.01, rel=1e-3)
+    run = report.runs[0]
     assert (run.sample, run.missed) == (4096, unseen(4096))
 
 
@@ -106,9 +106,9 @@ def test_lines_surfaces_and_volumes_have_an_error_and_clouds_have_none():
     assert [run.places for run in runs] == [4096, 4096, 4096, 0, 0, 0]
     assert all(0 < run.between < 1 for run in runs[:3])
     assert np.isnan(runs[3].between)
-    said = [run.unmeasured.partition(",")[0] for run in runs]
+    words = [run.unmeasured.partition(",")[0] for run in runs]
     cloud = "points without cells between them"
-    assert said == ["", "", "", cloud, "fur", "fur"]
+    assert words == ["", "", "", cloud, "fur", "fur"]
 
 
 def test_what_is_not_measured_is_named():
@@ -130,9 +130,9 @@ def test_what_is_not_measured_is_named():
 
 
 def test_no_sample_no_places(ball):
-    found = vizlight.check(illuminate(ball, SCENE), sample=0)
-    assert found.runs[0].places == 0
-    assert np.isnan(found.between)
+    report = vizlight.check(illuminate(ball, SCENE), sample=0)
+    assert report.runs[0].places == 0
+    assert np.isnan(report.between)
     empty = Run(points=0, terms=(), precision="float32", bytes=0, invalid=0)
     assert empty.missed == 0
 

@@ -350,6 +350,7 @@ class Live:
                 fixed = [light.seen_from(scene.view) for light in scene.lights]
                 scene = scene.replace(lights=fixed)
             source = relight.read(mesh, "", scene, named)
+            relight.refuse_following([source], scene)
         self.source, self._placed = source, None
         self._redraw()
         self._color(values)

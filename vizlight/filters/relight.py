@@ -44,8 +44,8 @@ class Source(NamedTuple):
     changed; None where that takes the filter itself. Where normals are turned to the eye,
     ``inputs`` has them as they are and ``sided`` turns them. ``inside`` is the number of points of
     a volume that are not on its surface. ``shares`` gives the shares of light inside a bundle.
-    ``field`` is the height field by which a shader casts the shadow, and ``uncast`` says why there
-    is none.
+    ``field`` is the height field by which a shader casts the shadow, and ``uncast`` the reason for
+    none.
     """
 
     mesh: pv.DataSet

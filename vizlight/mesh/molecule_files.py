@@ -92,7 +92,7 @@ def _element(residue: str, name: str) -> str:
 
 
 def of_mol2(path: Path) -> pv.PolyData:
-    """Return the first molecule of a Tripos file with its bonds and, if there are any, charges.
+    """Return the first molecule of a Tripos file with its bonds and charges, if it has these.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def of_mol2(path: Path) -> pv.PolyData:
     Raises
     ------
     ValueError
-        If there are no atoms, or a bond has one that is not there.
+        If it has no atoms, or a bond has one that is missing.
     """
     first, *others = "\n".join(_lines(path)).split("@<TRIPOS>MOLECULE")[1:] or [""]
     if others:
@@ -129,7 +129,7 @@ def of_mol(path: Path) -> pv.PolyData:
     Raises
     ------
     ValueError
-        If atoms or bonds are missing, or a bond has an atom that is not there.
+        If atoms or bonds, or an atom of a bond, are missing.
     """
     lines = _lines(path)
     if (states := sum(line.startswith("$$$$") for line in lines)) > 1:

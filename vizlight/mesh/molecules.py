@@ -344,7 +344,7 @@ def joined(
     Parameters
     ----------
     elements : sequence of str
-        Symbol of each atom; what is no element has the atomic number 0.
+        Symbol of each atom; anything but an element has the atomic number 0.
     places : array_like, shape (N, 3)
         Places in angstroms.
     pairs : ndarray of int, shape (M, 2), optional

@@ -319,7 +319,7 @@ def flow(case: Case) -> Drawing:
 
 
 def _where_it_flows(mesh: Step, name: str) -> Step:
-    """Return the step that takes the part of an image with vectors, if that is less than half."""
+    """Return the step that takes the part of an image with vectors, if the rest is larger."""
     grid = mesh.run()
     if not isinstance(grid, pv.ImageData):
         return mesh
