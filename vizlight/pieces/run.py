@@ -516,8 +516,11 @@ def _write_index(path: Path, pieces: Sequence[PieceSummary], folder: str, scalar
     root = ET.Element("VTKFile", type=kind, version="1.0", byte_order="LittleEndian")
     # Ghost cells were cut off before the pieces were written.
     grid = ET.SubElement(root, kind, GhostLevel="0")
+    active = {"Scalars": scalars}
+    if {piece.normals for piece in pieces} == {first.normals} and first.normals:
+        active["Normals"] = first.normals
     for name, data in (("point", "PPointData"), ("cell", "PCellData")):
-        element = ET.SubElement(grid, data, {"Scalars": scalars} if name == "point" else {})
+        element = ET.SubElement(grid, data, active if name == "point" else {})
         for key, type_ in first.arrays.items():
             if key.startswith(f"{name} "):
                 _array(element, key.partition(" ")[2], type_)

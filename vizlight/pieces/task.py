@@ -85,6 +85,8 @@ class PieceSummary:
         points, and of the mesh.
     ranges : dict of str to (float, float)
         Smallest and largest finite value of point arrays.
+    normals : str
+        Name of the active normals of the points, if any.
     lines : bool
         Whether it has lines and no faces.
     extent, grid
@@ -104,6 +106,7 @@ class PieceSummary:
     bounds: tuple[float, ...] = ()
     arrays: dict[str, str] = field(default_factory=dict)
     ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
+    normals: str = ""
     lines: bool = False
     extent: tuple[int, ...] = ()
     grid: dict[str, list[float]] = field(default_factory=dict)
@@ -130,6 +133,7 @@ def _described(mesh: Foreign, ranged: list[str | None] | None = None) -> PieceSu
     if not mesh.n_points:
         return summary
     summary.bounds, summary.lines = tuple(map(float, mesh.bounds)), has_lines_only(mesh)
+    summary.normals = mesh.point_data.active_normals_name or ""
     summary.arrays["type "] = type(mesh).__name__
     for kind, data in (("point", mesh.point_data), ("cell", mesh.cell_data)):
         for name, array in data.items():
