@@ -50,7 +50,8 @@ def values(case: Case) -> Drawing:
         if len(kinds) == 1 and smooth is not None:
             # The surface of a single label is a shape.
             drawing = surface(replace(case, question="shape", data=mesh))
-            return replace(drawing, words=f"surface of {array.name} {kinds[0]:g}")
+            key = drawing.keys[0] | {"title": f"{titled(mesh.run(), array.name)} {kinds[0]:g}"}
+            return replace(drawing, words=f"surface of {array.name} {kinds[0]:g}", keys=[key])
         inner = _inside(case, array, kinds) if len(kinds) == 1 else None
         if inner is not None:
             drawing = values(replace(case, data=inner, contents=Contents(inner.run())))
