@@ -620,6 +620,10 @@ def _symbol(name: str) -> str:
     return _PREFIXES[found[1] or ""] + _SYMBOLS[found[2]] if found is not None else name
 
 
+#: Units in capitals that mean nothing else.
+_CAPITALS = {"M/S", "CM/S", "KM/H", "METERS", "METRES", "MM/DAY", "PERCENT"}
+
+
 def written(unit: str) -> str:
     """Return a unit as it is printed: m/s for "m s**-1"; what is no product of factors as it is.
 
@@ -630,6 +634,8 @@ def written(unit: str) -> str:
     """
     if unit.lower().replace("degrees", "degree") in _CELSIUS:
         return "°C"
+    if unit.upper() in _CAPITALS:
+        return unit.lower()
     if "/" in unit and not re.search(r"[\s()*^.\d]", unit):
         return "/".join(map(_symbol, unit.split("/")))
     factors = [_FACTOR.fullmatch(word) for word in unit.split()]

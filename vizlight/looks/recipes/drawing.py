@@ -48,6 +48,10 @@ THIN = 1.5 / (85 / 25.4 * 300)
 ONLY = "#4477aa"
 #: Colour of the borders of surfaces, and keywords of what stands beside the data.
 DARK, BESIDE = "#333333", {"pickable": False}
+#: Most letters of a short form, such as SST, which stays in capitals.
+LONGEST_SHORT = 3
+#: Fewest and most days between steps that are months.
+MONTH = (27.5, 31.5)
 #: Keywords of the edges of a box, and of what it cuts.
 BOX_EDGES: Keywords = {"color": "gray", "line_width": 1}
 #: Keywords that take the edges of a surface that are its borders.
@@ -600,6 +604,8 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | 
     title = title or ("values" if meaning.is_of_reader(name) else name)
     if "," in name:
         title = _in_common(mesh, name.split(",")) or name
+    if title != name and title.isupper() and len(title) > LONGEST_SHORT:
+        title = title.lower()
     unit = "" if unit == "1" else meaning.written(unit)
     if level is not None:
         title = f"{title} = {levels.number(level)} {unit}".rstrip()
@@ -616,6 +622,8 @@ def _dated(mesh: pv.DataSet, methods: str) -> str:
     said = meaning.of(mesh)
     times = [float(np.ravel(mesh.field_data[series.TIME])[0]), *said.span]
     date, *ends = (dates.date(time, said.time).removesuffix(" 00:00") for time in times)
+    if _are_monthly(series.of(mesh), said.time):
+        date = date[: len("2000-01")]
     if not date and len(series.of(mesh)) > 1:
         unit = said.time.partition(", ")[0].partition(" since ")[0]
         date = f"t = {times[0]:g} {meaning.written(unit)}".rstrip()
@@ -625,6 +633,13 @@ def _dated(mesh: pv.DataSet, methods: str) -> str:
     return (
         f"{method[1]} of {ends[0]} to {ends[1]}" if all(ends) and ends else f"{method[1]} at {date}"
     )
+
+
+def _are_monthly(times: Sequence[float], unit: str) -> bool:
+    """Return whether steps are months apart."""
+    seconds = dates.seconds(unit.partition(" since ")[0])
+    days = np.diff(np.asarray(times, dtype=np.float64)) * (seconds or 0.0) / 86400
+    return len(days) > 0 and bool(np.all((days > MONTH[0]) & (days < MONTH[1])))
 
 
 def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:

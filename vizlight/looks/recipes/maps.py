@@ -110,6 +110,9 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     lines, levels, factor = contoured
     inks: Keywords = {"scalars": None, "color": INK_ON_RELIEF if is_relief else INK}
     thin = {"line_width": round(case.width / (2.0 if is_relief else 1.5), 1), "halo": False}
+    if not is_relief:
+        # Bands of colours show them too: coasts are darker.
+        thin["opacity"] = 0.5
     layers = [
         # A line of one point has no light, and no place in the picture.
         Layer(Step("", "[]", lines, name), {**beside, **inks, **keywords}, quiet=True)
