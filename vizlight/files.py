@@ -159,7 +159,8 @@ def read(
         points, such as the other component of a wind; tables (.csv) of a row for each point.
     at : dict, optional
         Value or index along any other axis of a netCDF file by its name, such as
-        ``{"number": 3}`` of an ensemble. Default: the first value.
+        ``{"number": 3}`` of an ensemble; a whole number within the values of an axis is the nearest
+        of these. Default: the first value.
     nodata : float, optional
         Value of a raster or a netCDF file that stands for none though the file does not say so.
         Default: one value far outside of all others and repeated, such as -9999, with a warning;
