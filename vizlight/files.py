@@ -52,6 +52,7 @@ from vizlight.mesh.derived import (
 )
 from vizlight.mesh.fills import without_fills
 from vizlight.mesh.molecules import atoms_in, backbone
+from vizlight.mesh.montages import side_by_side
 from vizlight.mesh.subdivision import simplices
 from vizlight.vtk import messages
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
@@ -70,7 +71,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FileError", "atoms_in", "backbone", "creases", "layer_of", "layers", "read", "read_parts",
-    "stretched", "surface_of", "warped", "with_vectors", "without_fills", "write_mesh",
+    "side_by_side", "stretched", "surface_of", "warped", "with_vectors", "without_fills",
+    "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.
