@@ -140,6 +140,13 @@ def black():
     return np.zeros((20, 20, 3), np.uint8)
 
 
+def block():
+    """Return a volume of values."""
+    volume = pv.ImageData(dimensions=(4, 3, 2))
+    volume["v"] = np.arange(24.0)
+    return volume
+
+
 def orbital():
     """Return a volume of two values with an atom in it."""
     volume = pv.ImageData(dimensions=(2, 1, 1))
@@ -258,6 +265,7 @@ OWN = {
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "creases.creases": {"surface": ball},
     "molecules.backbone": {"atoms": chain},
+    "montages.side_by_side": {"volume": block, "name": "v"},
     "molecules.atoms_in": {"volume": orbital},
     "both_sides.both_sides": {"surface": ball, "names": ("a", "b")},
     "box_axes.box_axes": {"size": 10.0},

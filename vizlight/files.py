@@ -52,6 +52,7 @@ from vizlight.mesh.derived import (
 )
 from vizlight.mesh.fills import without_fills
 from vizlight.mesh.molecules import atoms_in, backbone
+from vizlight.mesh.montages import side_by_side
 from vizlight.mesh.subdivision import simplices
 from vizlight.vtk import messages
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
@@ -70,7 +71,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FileError", "atoms_in", "backbone", "creases", "layer_of", "layers", "read", "read_parts",
-    "stretched", "surface_of", "warped", "with_vectors", "without_fills", "write_mesh",
+    "side_by_side", "stretched", "surface_of", "warped", "with_vectors", "without_fills",
+    "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.
@@ -159,7 +161,8 @@ def read(
         points, such as the other component of a wind; tables (.csv) of a row for each point.
     at : dict, optional
         Value or index along any other axis of a netCDF file by its name, such as
-        ``{"number": 3}`` of an ensemble. Default: the first value.
+        ``{"number": 3}`` of an ensemble; a whole number within the values of an axis is the nearest
+        of these. Default: the first value.
     nodata : float, optional
         Value of a raster or a netCDF file that stands for none though the file does not say so.
         Default: one value far outside of all others and repeated, such as -9999, with a warning;

@@ -235,6 +235,15 @@ def test_lengths_of_vectors_are_speeds_by_their_name_or_unit(name, unit, word):
     assert drawing.titled_length(grid, name).startswith(f"{word} of ")
 
 
+def test_the_title_of_a_speed_is_what_the_names_of_components_have_in_common():
+    grid, said = pv.ImageData(dimensions=(2, 2, 1)), meaning.Meaning()
+    for letter in "uv":
+        grid[letter] = np.zeros(4)
+        said.add_array(letter, {"units": "m/s", "long_name": f"{letter}-momentum component"})
+    meaning.attach(grid, said)
+    assert drawing.titled_length(grid, "u,v") == "speed of u,v (m/s)"
+
+
 def test_flow_on_a_surface_is_its_evenly_spaced_strokes():
     grid = sheet(0.05, 16)
     look = vizlight.look(grid, "flow", size=(240, 160))

@@ -680,6 +680,30 @@ def test_fake_places_are_left_out_for_true_ones():
 
 
 @pytest.mark.parametrize(
+    ("asked", "index", "note"),
+    [
+        (0, 2, "s_rho -0.1, the value nearest to 0; its index is 2"),
+        ("0", 2, "s_rho -0.1, the value nearest to 0; its index is 2"),
+        (1, 1, "s_rho -0.5"),
+        (-0.9, 0, "s_rho -0.9"),
+        ("last", 2, "s_rho -0.1"),
+    ],
+)
+def test_a_number_within_the_values_of_an_axis_is_the_nearest_of_them(asked, index, note):
+    values = np.stack([HEIGHTS, HEIGHTS + 100, HEIGHTS + 200])
+    axes = {"s_rho": np.array([-0.9, -0.5, -0.1]), "lat": LAT, "lon": LON}
+    mesh = grid({"t": (("s_rho", "lat", "lon"), values)}, axes, at={"s_rho": asked})
+    assert mesh["t"].min() == HEIGHTS.min() + 100 * index
+    assert note in meaning.of(mesh).notes
+
+
+def test_eastings_and_northings_without_a_unit_are_in_metres():
+    axes = {"northing": LAT * 1e3, "easting": LON * 1e3}
+    mesh = grid({"t": (("northing", "easting"), HEIGHTS)}, axes)
+    assert str(mesh.field_data["unit"][0]) == "metre"
+
+
+@pytest.mark.parametrize(
     ("unit", "ticks", "given", "shown"),
     [("hPa", [1000, 500], {}, "1000 hPa"), ("Pa", [1e5, 5e4], {"lev": 5e4}, "500 hPa"),
      ("m", [10.0, 80.0], {"lev": 80.0}, "80 m"), ("1", [1.0, 2.0], {"lev": 2.0}, "")],

@@ -116,3 +116,9 @@ def test_bonds_are_those_of_mdl(text, tmp_path):
 def test_a_molecule_that_is_not_whole_is_refused(name, text, said, tmp_path):
     with pytest.raises(FileError, match=said):
         vizlight.read(written(tmp_path, text, name))
+
+
+def test_a_formula_is_seen_from_above(tmp_path):
+    flat = MOL.replace("1.5000 Cl", "0.0000 Cl").replace("9.0000    0.0000", "2.0000    3.0000")
+    look = vizlight.look(written(tmp_path, flat, "a.mol"), size=(240, 160))
+    np.testing.assert_allclose(look.view.direction, (0, 0, -1), atol=1e-6)

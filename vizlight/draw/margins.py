@@ -297,6 +297,9 @@ class MarginKey:
         mapper.SetColorModeToDirectScalars()
         picture = vtkActor2D()
         picture.SetMapper(mapper)
+        #: Kinds without names have no more than a title.
+        self._is_title = bool(self._marks) and not any(word.strip() for _, word in self._marks)
+        picture.SetVisibility(not self._is_title)
         self._heading = _text("", ink)
         self._heading.GetTextProperty().SetLineSpacing(1.3)
         self._labels = [_text(word, ink) for _, word in self._marks]
@@ -339,12 +342,14 @@ class MarginKey:
             Whether the title right above the data is that of the key.
         """
         self._half, self._room = self.size * short / 2, width
+        if self._is_title:
+            return 1.0, 1.0
         columns = max(int(width / (LETTER * letters)), 6)
         name, _, more = self._title.partition(";")
         if kind := LENGTHS.match(name):
             name = kind[1]
         # A title of one part stands above the data, and is not said twice.
-        is_said = alone and (not more or not self.is_bar or len(name) > max(columns, LONGEST))
+        is_said = alone and (not more or not self.is_bar or len(name) > LONGEST)
         head = self._unit if is_said else f"{name} ({self._unit})" * bool(name)
         head = "\n".join(filter(None, [head.replace(" ()", ""), self._below]))
         longest = max(map(len, head.split()), default=0)
@@ -371,6 +376,8 @@ class MarginKey:
 
     def draw(self, middle: tuple[float, float], box: tuple[float, float], letters: float) -> None:
         """Place the key about the middle of its box."""
+        if self._is_title:
+            return
         x, y = middle
         size = max(round(letters), 8)
         for text in (self._heading, *self._labels):

@@ -249,7 +249,8 @@ def of_dataset(
     time : float, int or str, optional
         Time of a step, as for :func:`.series.chosen`.
     at : dict, optional
-        Value or index along any other axis, by its name. Default: the first.
+        Value or index along any other axis, by its name; a number within the values of the axis is
+        the nearest of them. Default: the first.
     nodata : float, optional
         Value that stands for none, as for :func:`.fills.without_missing`.
     source : str
@@ -783,13 +784,18 @@ class _Reader:
             count = self.file.sizes[name]
             ticks = list(range(count)) if along is None else along.values.tolist()
             texts = [str(tick) for tick in ticks]
+            nearest = _nearest(ticks, value)
             if str(value) in texts:
                 result[name] = texts.index(str(value))
+            elif nearest is not None:
+                result[name] = nearest
             else:
                 found = [tick if isinstance(tick, int | float) else np.nan for tick in ticks]
                 result[name] = series.chosen(found, value, f"at, along {name}")
-            self.said.notes.append(f"{name} {texts[result[name]]}")
-            self._say_level(name, result[name])
+            index = result[name]
+            asked = f", the value nearest to {value}; its index is {index}"
+            self.said.notes.append(f"{name} {texts[index]}" + asked * (nearest is not None))
+            self._say_level(name, index)
         return result
 
     def _fields(self) -> dict[str, Foreign]:
@@ -968,6 +974,8 @@ class _Reader:
         if letter in ("x", "y") and (system := self._system(ticks, attributes)):
             attributes, unit = attributes | {"units": system}, system
         unit = unit.lower()
+        if not unit and re.fullmatch("(east|north)ings?", name.lower()):
+            unit = "m"
         axis = _Axis(ticks, np.arange(len(ticks)), f"{name!r}{by}", "", scale)
         if letter == "z":
             ticks, axis.words, axis.scale = _up(name, attributes, ticks, by)
@@ -1076,6 +1084,22 @@ class _Reader:
             self.said.notes.append(
                 f"{name!r} turned by up to {most:.0f} degrees to where the grid is drawn"
             )
+
+
+def _nearest(ticks: Sequence[object], value: object) -> int | None:
+    """Return the index of the value along an axis that is nearest to a number, if that is one.
+
+    None where it is no whole number that may be an index, or none within the axis.
+    """
+    numbers: Array = np.array([one if isinstance(one, float) else np.nan for one in ticks])
+    is_whole = re.fullmatch(r"[-+]?\d+", str(value)) is not None
+    if not is_whole or not np.isfinite(numbers).all() or not 0 <= float(str(value)) < len(numbers):
+        return None
+    away = np.abs(numbers - float(str(value)))
+    # Half a step beyond its ends is within an axis.
+    half = np.abs(np.diff(numbers)).max(initial=0.0) / 2
+    low, high = numbers.min() - half, numbers.max() + half
+    return int(away.argmin()) if low <= float(str(value)) <= high and away.min() > 0 else None
 
 
 def _is_empty(mesh: pv.DataSet) -> bool:

@@ -647,9 +647,11 @@ def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:
     arrays = meaning.of(mesh).arrays
     every = [arrays.get(name, {}) for name in names]
     texts = [array.get("standard_name") or array.get("long_name") or "" for array in every]
-    first, *others = (re.split(r"[_ ]+", text) for text in texts)
-    left = [word for word in first if all(word in words for words in others)]
-    return " ".join(left).replace("component of ", "").replace(" component", "")
+    # The letter of an axis may be a part of a word, as in u-momentum.
+    first, *others = (re.split(r"[_ ]+", re.sub(r"\b[u-z]-", "", text)) for text in texts)
+    left = " ".join(word for word in first if all(word in words for words in others))
+    left = left.replace("component of ", "").replace(" component", "")
+    return "" if left in ("component", "momentum") else left
 
 
 def times_as_high(factor: float) -> str:

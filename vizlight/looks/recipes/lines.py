@@ -117,7 +117,12 @@ def molecule(case: Case) -> Drawing:
     if atoms.run().n_lines:
         stick = STICK | {"n_sides": STICK["n_sides"] * finer}
         solid = Step("molecule", ".append_polydata", balls, Step("", ".tube", bonds, **stick))
-    return surfaces.values(replace(case, data=solid, contents=Contents(solid.run())))
+    wishes = case.wishes
+    if case.contents.flat_axis == 2 and wishes.view is None and wishes.frame is None:
+        # A formula is read from above.
+        wishes = replace(wishes, view="above")
+    contents = Contents(solid.run())
+    return surfaces.values(replace(case, data=solid, contents=contents, wishes=wishes))
 
 
 def backbone(case: Case) -> Drawing:

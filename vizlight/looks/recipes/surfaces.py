@@ -91,7 +91,11 @@ def values(case: Case) -> Drawing:
         words = f"{bands['long_name']} as red, green and blue"
     notes = [note] if note else []
     if array.role == "kinds" and (count := len(kinds_of(mesh.run(), array.name))) > MOST_IN_KEY:
-        keys, notes = [], [f"{array.name} has {count} kinds: colours repeat, and have no key"]
+        notes = [f"{array.name} has {count} kinds: colours repeat, and have no key"]
+        # A key of a kind without a name is its title alone.
+        table = Step("", "vizlight.maps.kinds", {0: " "})
+        title = f"{keys[0]['title']}; {count} kinds"
+        keys = [keys[0] | {"cmap": table, "title": title}]
     if sides is None:
         layers = [Layer(mesh, shown), *edges.edges(camera)]
     else:

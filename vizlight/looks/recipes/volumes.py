@@ -21,7 +21,7 @@ from vizlight.looks.recipes.drawing import (
     range_of,
 )
 from vizlight.looks.steps import Step
-from vizlight.mesh import density_maps, meaning, molecules
+from vizlight.mesh import density_maps, meaning, molecules, montages
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
@@ -83,6 +83,8 @@ def isosurface(case: Case) -> Drawing:
     else slices, unless an organ was cut out before.
     """
     array = case.needed_array
+    if case.wishes.question == "auto" and _is_stack(case, array):
+        return stack(case)
     level = _level(case, array)
     if isinstance(level, str):
         return slices(case, level)
@@ -265,6 +267,21 @@ def slices(case: Case, why: str = "") -> Drawing:
     layers = [Layer(mesh, shown), *case.boxed(box, camera)]
     notes = [note] if note else []
     return Drawing(layers, camera, scene, lit, words, [case.bar(array, colors)], notes)
+
+
+def stack(case: Case) -> Drawing:
+    """Draw the slices of a stack side by side, in the colours of its values."""
+    array = case.needed_array
+    sheet = Step("sheet", "files.side_by_side", case.data, array.name)
+    flat = replace(case, data=sheet, contents=Contents(sheet.run()), question="none")
+    words = f"slices of {array.name} side by side, from the upper left"
+    return replace(surfaces.values(flat), words=words)
+
+
+def _is_stack(case: Case, array: Named) -> bool:
+    """Return whether a volume has one array, and few slices that are far apart."""
+    is_one = len(case.contents.arrays) == 1 and not array.of_cells
+    return is_one and montages.is_stack(case.data.run())
 
 
 def _sample(case: Case, array: Named) -> Array:
