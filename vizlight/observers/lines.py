@@ -112,7 +112,7 @@ def segments_of(parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera) ->
     return Segments(number, start, way, along, line, _joined(widths), _joined(ahead))
 
 
-def _joined(rows: list[Array]) -> Array:
+def _joined(rows: Sequence[Array]) -> Array:
     """Return arrays one after the other; a single one is not copied."""
     return rows[0] if len(rows) == 1 else np.concatenate(rows)
 
