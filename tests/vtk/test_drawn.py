@@ -12,6 +12,8 @@ def polygons():
     """Return a surface of a vertex, a line, polygons of 3 to 6 corners and 2, and a strip."""
     angles = [np.linspace(0, 2 * np.pi, n, endpoint=False) for n in (4, 3, 6, 4, 5, 3)]
     rings = [np.column_stack([3 * i + np.cos(a), np.sin(a), 0 * a]) for i, a in enumerate(angles)]
+    # A fan would leave a dented pentagon.
+    rings[4][2] *= (1, -0.2, 1)
     ends = np.cumsum([0, *map(len, rings)])
     faces = [[len(r), *range(a, a + len(r))] for a, r in zip(ends, rings, strict=False)]
     faces.insert(2, [2, 0, 1])
@@ -43,6 +45,13 @@ def test_polygons_of_any_corners_are_cut_as_vtk_cuts_them():
     np.testing.assert_array_equal(corners[:2], [[0, 1, 2], [0, 2, 3]])
 
 
+def test_polygons_without_area_are_no_triangles():
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0.0]])
+    found = DrawnTriangles(pv.PolyData(square, faces=[2, 0, 1, 3, 0, 1, 2]))
+    np.testing.assert_array_equal(found[:], [[0, 1, 2]])
+    np.testing.assert_array_equal(found.cells(np.array([0])), [1])
+
+
 @pytest.mark.parametrize("entries", [1 << 20, 7])
 def test_polygons_around_points_are_all_that_have_one(monkeypatch, entries):
     monkeypatch.setattr(drawn, "TABLE", entries)
@@ -57,7 +66,7 @@ def test_polygons_around_points_are_all_that_have_one(monkeypatch, entries):
         np.testing.assert_array_equal(found, expected)
 
 
-@pytest.mark.parametrize("size", [(4, 3, 1), (4, 1, 3), (1, 5, 3)])
+@pytest.mark.parametrize("size", [(4, 3, 1), (4, 1, 3), (1, 5, 2)])
 def test_grids_of_one_layer_have_the_quadrilaterals_of_their_surface(size):
     image = pv.ImageData(dimensions=size)
     for grid in (image, image.cast_to_structured_grid(), image.cast_to_rectilinear_grid()):

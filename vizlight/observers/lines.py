@@ -86,32 +86,35 @@ def segments_of(parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera) ->
     """
     width, height = pixels.size
     number = np.full((height, width), -1, dtype=np.intp)
-    ends, widths, breaks, ahead = [], [], [], []
+    starts, ways, widths, breaks, ahead = [], [], [], [], []
     count = 0
     for i, part in enumerate(parts):
         if part.kind != "line":
             continue
         shows = pixels.part == i
         number[pixels.row[shows], pixels.column[shows]] = count + pixels.cell[shows]
-        points = np.asarray(part.inputs.points[:], dtype=np.float64)
-        places = in_pixels(camera, pixels.size, points)
+        places = in_pixels(camera, pixels.size, np.asarray(part.inputs.points[:]))
         cells = part.cells[:]
-        ends.append(places[cells])
+        starts.append(places[cells[:, 0]])
+        ways.append(places[cells[:, 1]] - starts[-1])
         widths.append(part.drawn.widths(camera, height))
         breaks.append(np.insert(cells[1:, 0] != cells[:-1, 1], 0, True))
-        ahead.append(np.zeros(len(cells)) if part.ahead is None else part.ahead)
+        ahead.append(np.broadcast_to(0.0, len(cells)) if part.ahead is None else part.ahead)
         count += len(cells)
     if not count:
         return None
-    both, first = np.concatenate(ends), np.concatenate(breaks)
-    way = both[:, 1] - both[:, 0]
+    start, way = _joined(starts), _joined(ways)
     length = np.nan_to_num(np.hypot(way[:, 0], way[:, 1]))
-    before = np.insert(np.cumsum(length)[:-1], 0, 0.0)
-    line = np.cumsum(first) - 1
-    return Segments(
-        number, both[:, 0], way, before + JUMP * line, line, np.concatenate(widths),
-        np.concatenate(ahead),
-    )  # fmt: skip
+    line = np.cumsum(np.concatenate(breaks)) - 1
+    along = np.zeros(count)
+    np.cumsum(length[:-1], out=along[1:])
+    along += JUMP * line
+    return Segments(number, start, way, along, line, _joined(widths), _joined(ahead))
+
+
+def _joined(rows: Sequence[Array]) -> Array:
+    """Return arrays one after the other; a single one is not copied."""
+    return rows[0] if len(rows) == 1 else np.concatenate(rows)
 
 
 class Strokes(NamedTuple):

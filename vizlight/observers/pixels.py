@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 #: Number of cells that are drawn at once, so that memory goes by pixels.
 BLOCK = 1 << 19
+#: Number of points whose places in a picture are found at once.
+FEW = 1 << 14
 #: Number of times by which the points between the first and the last of some cells may be more than
 #: their corners, so that all of them are taken.
 SPARSE = 2
@@ -87,7 +89,7 @@ class Cells(NamedTuple):
         """Return the widths in pixels at the corners' beginnings, in a picture of some height."""
         count = len(self.corners)
         if self.diameter is None:
-            return np.full(count, self.width)
+            return np.broadcast_to(self.width, count)
         points = np.asarray(self.points[:], dtype=np.float64)[self.corners[:, 0]]
         return np.asarray(np.maximum(self.diameter / footprint(camera, points, height), self.width))
 
@@ -280,9 +282,12 @@ def in_pixels(camera: pv.Camera, size: tuple[int, int], points: Array) -> Array:
     Points behind the eye have no place in the picture: NaN.
     """
     width, height = size
-    places, front = in_view(camera, width / height, points)
-    x, y, _ = np.where(front, places.T, np.nan)
-    return np.column_stack([(1 + x) / 2 * width, (1 - y) / 2 * height])
+    pixels = np.empty((len(points), 2))
+    for rows in _pool.blocks(len(points), FEW):
+        places, front = in_view(camera, width / height, np.asarray(points[rows], np.float64))
+        x, y, _ = np.where(front, places.T, np.nan)
+        pixels[rows] = np.column_stack([(1 + x) / 2 * width, (1 - y) / 2 * height])
+    return pixels
 
 
 def courses(
