@@ -452,7 +452,7 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
         odd = [key for key in data if len(data[key]) != count]
         for key in odd:
             del data[key]
-        if odd:
+        if odd and mesh.n_cells:  # without faces nothing is lost
             _check.warn(f"file: arrays without a row for each {what} are left out: {odd}")
     for cells in cell_arrays(mesh):
         ids, ends = connectivity(cells)
