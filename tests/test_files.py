@@ -555,6 +555,11 @@ def test_groups_of_faces_beside_lines_are_left_out(tmp_path):
         with pytest.warns(UserWarning, match=words):
             found = files.read(path)
     assert (found.n_cells, len(found.cell_data)) == (3, 0)
+    # Without faces nothing is lost.
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\ng a\nusemtl a\n")
+    with warnings.catch_warnings(record=True) as notes:
+        files.read(path)
+    assert not [note for note in notes if "left out" in str(note.message)]
     bad = found.copy()
     pv.PolyData.GetCellData(bad).AddArray(pv.convert_array(np.zeros(1), "odd"))
     with pytest.raises(ValueError, match="expected cell arrays of 3 rows, one per cell, got 'odd'"):

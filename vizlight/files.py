@@ -446,13 +446,13 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
     if blocks.is_too_far(mesh):
         raise FileError(f"points beyond {_check.FARTHEST:g}, the largest coordinate")
     # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines, and
-    # normals that no face names to the points, however many these are.
+    # normals that no face names to the points, however many these are; points alone lose nothing.
     of_points = [(mesh.point_data, mesh.n_points, "point")] if path.suffix.lower() == ".obj" else []
     for data, count, what in ((mesh.cell_data, mesh.n_cells, "cell"), *of_points):
         odd = [key for key in data if len(data[key]) != count]
         for key in odd:
             del data[key]
-        if odd and mesh.n_cells:  # without faces nothing is lost
+        if odd and (mesh.GetMaxSpatialDimension() or not of_points):
             _check.warn(f"file: arrays without a row for each {what} are left out: {odd}")
     for cells in cell_arrays(mesh):
         ids, ends = connectivity(cells)
