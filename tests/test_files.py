@@ -110,6 +110,9 @@ def test_bytes_that_are_read_with_a_file(tmp_path):
     assert files._size(tmp_path / "c.vtk") == 1000
     assert files._size(tmp_path / "case" / "a.foam") == 2000
     assert files._size(tmp_path / "e.pvd") == 1200
+    (tmp_path / "f.pvd").write_text(f'<A file="{"A" * 5000}"/>')
+    with pytest.raises(files.FileError, match=r"f\.pvd"):
+        files.read(tmp_path / "f.pvd")
 
 
 def test_missing_file(tmp_path):

@@ -365,8 +365,15 @@ def _size(path: Path) -> int:
         with path.open("rb") as case:
             return ensight.size(case)
     files = {path, *references.named(path)}
-    files |= {further for file in files if file.is_file() for further in references.named(file)}
-    return sum(file.stat().st_size for file in files if file.is_file())
+    files |= {further for file in files if _is_file(file) for further in references.named(file)}
+    return sum(file.stat().st_size for file in files if _is_file(file))
+
+
+def _is_file(path: Path) -> bool:
+    """Return whether a path is a file, also one whose name the system does not take."""
+    with contextlib.suppress(OSError, ValueError):
+        return path.is_file()
+    return False
 
 
 def _meshes(
