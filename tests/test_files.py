@@ -110,6 +110,9 @@ def test_bytes_that_are_read_with_a_file(tmp_path):
     assert files._size(tmp_path / "c.vtk") == 1000
     assert files._size(tmp_path / "case" / "a.foam") == 2000
     assert files._size(tmp_path / "e.pvd") == 1200
+    (tmp_path / "f.pvd").write_text(f'<A file="{"A" * 5000}"/>')
+    with pytest.raises(files.FileError, match=r"f\.pvd"):
+        files.read(tmp_path / "f.pvd")
 
 
 def test_missing_file(tmp_path):
@@ -555,6 +558,11 @@ def test_groups_of_faces_beside_lines_are_left_out(tmp_path):
         with pytest.warns(UserWarning, match=words):
             found = files.read(path)
     assert (found.n_cells, len(found.cell_data)) == (3, 0)
+    # Without faces nothing is lost.
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\ng a\nusemtl a\n")
+    with warnings.catch_warnings(record=True) as notes:
+        files.read(path)
+    assert not [note for note in notes if "left out" in str(note.message)]
     bad = found.copy()
     pv.PolyData.GetCellData(bad).AddArray(pv.convert_array(np.zeros(1), "odd"))
     with pytest.raises(ValueError, match="expected cell arrays of 3 rows, one per cell, got 'odd'"):

@@ -113,7 +113,7 @@ def test_a_helper_without_forks_ends_at_a_file_that_may_spoil_others(helper, mon
     assert "reader was ended by SIGKILL" in _supervise.unreadable("a", code, 9)
 
 
-def test_a_helper_ends_with_its_parent_or_at_an_interrupt(helper, monkeypatch):
+def test_a_helper_ends_with_its_parent_or_at_an_interrupt(helper, monkeypatch, tmp_path):
     assert helper.tried((partial(reads, "a", "reads"), 9.0)) == (0, "")
     process = helper._process
     process.stdin.close()
@@ -121,12 +121,22 @@ def test_a_helper_ends_with_its_parent_or_at_an_interrupt(helper, monkeypatch):
     helper.tried((partial(reads, "a", "reads"), 9.0))
 
     def interrupt(_file):
+        while LINUX and not [*tmp_path.iterdir()]:
+            time.sleep(0.01)  # until the trial has begun
         raise KeyboardInterrupt
 
+    monkeypatch.setattr(
+        _trials,
+        "_PROGRAM",
+        f"import os; os.environ['TMPDIR'] = {str(tmp_path)!r}; {_trials._PROGRAM}",
+    )
+    helper.end()
+    assert helper.tried((partial(reads, "a", "reads"), 9.0)) == (0, "")
     with monkeypatch.context() as reading:
         reading.setattr(_trials.pickle, "load", interrupt)
         with pytest.raises(KeyboardInterrupt):
-            helper.tried((partial(reads, "a", "reads"), 9.0))
+            helper.tried((partial(reads, "a", "hangs"), 9.0))
+    assert not [*tmp_path.iterdir()]
     assert helper._process is None
 
 

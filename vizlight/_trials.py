@@ -217,7 +217,7 @@ class _Helper:
         if process:
             # What it has not read may be left in the pipe.
             with contextlib.suppress(BrokenPipeError), process:
-                process.kill()
+                process.terminate()
 
 
 #: Helpers by the number of the process: a fork does not use those of its parent.
@@ -239,18 +239,24 @@ def serve() -> None:
     _is_trial = True
     answers.write(_READY)
     answers.flush()
+    if _FORKS:
+        signal.signal(signal.SIGTERM, _leave)
     said = ""
-    # Without a fork a damaged file may spoil those after it.
-    while _FORKS or not said:
-        try:
+    with contextlib.suppress(EOFError, SystemExit):
+        # Without a fork a damaged file may spoil those after it.
+        while _FORKS or not said:
             folder, request = pickle.load(asked)
-        except EOFError:
-            return
-        with contextlib.suppress(OSError):
-            os.chdir(folder)
-        code, said = _forked(request) if _FORKS else _here(request)
-        pickle.dump((code, said), answers)
-        answers.flush()
+            with contextlib.suppress(OSError):
+                os.chdir(folder)
+            code, said = _forked(request) if _FORKS else _here(request)
+            pickle.dump((code, said), answers)
+            answers.flush()
+    os._exit(0)
+
+
+def _leave(_number: int, _frame: object) -> None:
+    """Leave what is under way, with its temporary files."""
+    sys.exit()
 
 
 def _here(request: Request) -> tuple[int, str]:

@@ -368,8 +368,15 @@ def _size(path: Path) -> int:
         with path.open("rb") as case:
             return ensight.size(case)
     files = {path, *references.named(path)}
-    files |= {further for file in files if file.is_file() for further in references.named(file)}
-    return sum(file.stat().st_size for file in files if file.is_file())
+    files |= {further for file in files if _is_file(file) for further in references.named(file)}
+    return sum(file.stat().st_size for file in files if _is_file(file))
+
+
+def _is_file(path: Path) -> bool:
+    """Return whether a path is a file, also one whose name the system does not take."""
+    with contextlib.suppress(OSError, ValueError):
+        return path.is_file()
+    return False
 
 
 def _meshes(
@@ -449,13 +456,13 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
     if blocks.is_too_far(mesh):
         raise FileError(f"points beyond {_check.FARTHEST:g}, the largest coordinate")
     # VTK's reader of OBJ gives groups and materials to the faces alone, also beside lines, and
-    # normals that no face names to the points, however many these are.
+    # normals that no face names to the points, however many these are; points alone lose nothing.
     of_points = [(mesh.point_data, mesh.n_points, "point")] if path.suffix.lower() == ".obj" else []
     for data, count, what in ((mesh.cell_data, mesh.n_cells, "cell"), *of_points):
         odd = [key for key in data if len(data[key]) != count]
         for key in odd:
             del data[key]
-        if odd:
+        if odd and (mesh.GetMaxSpatialDimension() or not of_points):
             _check.warn(f"file: arrays without a row for each {what} are left out: {odd}")
     for cells in cell_arrays(mesh):
         ids, ends = connectivity(cells)
