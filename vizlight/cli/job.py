@@ -16,7 +16,6 @@ from vizlight._words import message
 from vizlight.cli.output import OK, complain, draw, one_line, say
 from vizlight.cli.scenes import times
 from vizlight.looks.steps import Step, in_order, source, written
-from vizlight.shading.results import DEFAULT_NAME
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -188,6 +187,8 @@ def _name(look: Look) -> str:
 
 def _checks(look: Look) -> list[Step]:
     """Return the steps that print the cost and the error of the light of a look."""
+    from vizlight.shading.results import DEFAULT_NAME
+
     name = _name(look)
     named = {} if name == DEFAULT_NAME else {"name": name}
     lit = look.drawing.lit
