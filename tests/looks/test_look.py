@@ -10,7 +10,9 @@ from PIL import Image
 
 import vizlight
 from vizlight.files import FileError
+from vizlight.looks.recipes.drawing import titled
 from vizlight.looks.rules import RULES
+from vizlight.mesh import meaning, series
 
 SIZE = (120, 80)
 
@@ -518,3 +520,18 @@ def test_the_neutral_colour_of_signed_values_is_at_0():
     ):
         (key,) = vizlight.look(mesh, **options).drawing.keys
         assert (key["cmap"], key["clim"]) == (name, ends)
+
+
+@pytest.mark.parametrize(
+    ("days", "long_name", "title"),
+    [
+        ((0, 31, 59), "SURFACE WIND", "surface wind, 2000-02 (m/s)"),
+        ((0, 31, 60), "SST", "SST, 2000-02 (m/s)"),
+        ((0, 1, 2), "Wind", "Wind, 2000-01-02 (m/s)"),
+    ],
+)
+def test_titles_in_capitals_are_written_small_and_monthly_steps_are_months(days, long_name, title):
+    grid = pv.ImageData(dimensions=(3, 3, 1))
+    arrays = {"w": {"long_name": long_name, "units": "M/S"}}
+    meaning.attach(grid, meaning.Meaning(arrays=arrays, time="days since 2000-01-01"))
+    assert titled(series.marked(grid, days, 1), "w") == title
