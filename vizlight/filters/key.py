@@ -154,8 +154,8 @@ def key(
         if len(values):
             mesh.field_data[LEVELS] = values
     _put_words(mesh, WORDS, words)
-    if title:
-        _put_words(mesh, TITLE, [_check.text("title", title)])
+    if title is not None and _check.text("title", title):
+        _put_words(mesh, TITLE, [title])
     return mesh
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pyvista as pv
 
 from vizlight import _check
@@ -205,7 +206,9 @@ def legibility(
         raise ValueError(_check.message(name, "scalars= beside it", "none"))
     drawing: Keywords = {"conditioned": _check.boolean("conditioned", conditioned)}
     drawing |= {"exponent": exponent, "model": model}
-    drawing = {name: value for name, value in drawing.items() if value != DEFAULTS[name]} | options
+    drawing = {
+        name: value for name, value in drawing.items() if np.any(value != DEFAULTS[name])
+    } | options
     if tangents is not None:
         drawing["tangents"] = tangents
     how: Keywords = {"distance_mm": distance_mm, "screen": screen, "noise": noise}
