@@ -275,7 +275,15 @@ def stack(case: Case) -> Drawing:
     sheet = Step("sheet", "files.side_by_side", case.data, array.name)
     flat = replace(case, data=sheet, contents=Contents(sheet.run()), question="none")
     words = f"slices of {array.name} side by side, from the upper left"
-    return replace(surfaces.values(flat), words=words)
+    drawing = surfaces.values(flat)
+    first, *others = drawing.layers
+    # What is between slices is paper.
+    paper = {"nan_color": case.wishes.background}
+    colors = first.keywords | paper
+    if isinstance(table := colors.get("cmap"), Step):
+        colors["cmap"] = Step(table.name, table.path, *table.arguments, **table.keywords | paper)
+    layers = [replace(first, keywords=colors), *others]
+    return replace(drawing, words=words, layers=layers)
 
 
 def _is_stack(case: Case, array: Named) -> bool:
