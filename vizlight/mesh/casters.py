@@ -129,7 +129,7 @@ class FieldCaster:
     def __init__(self, grid: Grid | pv.PolyData, options: CasterOptions) -> None:
         heights = heights_of(grid, options.elevation, options.exaggeration, options.raster)
         # Where the ground goes on beyond the border and in holes its slope does, for one cell.
-        self._rim = int(options.border == "extend")
+        self._rim = int(str(options.border) == "extend")
         nodes = height_field.continued(heights.x, heights.y, heights.z) if self._rim else (
             heights.x, heights.y, heights.z
         )  # fmt: skip
