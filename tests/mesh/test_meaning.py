@@ -142,6 +142,8 @@ def test_a_mesh_without_meaning():
         ("K", "K"),
         ("m/s", "m/s"),
         ("meters", "m"),
+        ("METERS", "m"),
+        ("M/S", "m/s"),
         ("meter second-1", "m/s"),
         ("centimeter/s", "cm/s"),
         ("mm/month", "mm/month"),

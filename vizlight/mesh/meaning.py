@@ -634,8 +634,8 @@ def written(unit: str) -> str:
     """
     if unit.lower().replace("degrees", "degree") in _CELSIUS:
         return "°C"
-    if unit.upper() in _CAPITALS:
-        return unit.lower()
+    if unit in _CAPITALS:
+        unit = unit.lower()
     if "/" in unit and not re.search(r"[\s()*^.\d]", unit):
         return "/".join(map(_symbol, unit.split("/")))
     factors = [_FACTOR.fullmatch(word) for word in unit.split()]
