@@ -278,7 +278,7 @@ def test_a_molecule_has_balls_for_its_atoms_and_sticks_between_them(tmp_path):
     assert vizlight.look(path, size=SIZE, array="radius").array == "radius"
 
 
-def test_a_molecule_of_long_chains_shows_its_backbone():
+def test_a_molecule_of_long_chains_shows_its_backbone(tmp_path):
     turn = np.linspace(0, 40, 61)
     places = np.column_stack([3 * np.cos(turn), 3 * np.sin(turn), turn])
     chain = pv.PolyData(np.concatenate([places, places + np.array([9, 0, 0])]))
@@ -287,8 +287,15 @@ def test_a_molecule_of_long_chains_shows_its_backbone():
     chain["backbone_mask"] = np.ones(122, np.uint8)
     look = vizlight.look(chain, size=SIZE, array="chain")
     assert (look.shown, look.mesh.n_lines) == ("backbone", 0)
-    assert look.mesh.bounds_size[0] == pytest.approx(9 + 6 + 1.6, abs=0.1)
+    assert look.mesh.bounds_size[0] == pytest.approx(9 + 6 + 0.8, abs=0.3)
     assert "files.backbone(" in look.script()
+    chain["residue"] = np.tile(np.arange(4, 65), 2)
+    chain.save(tmp_path / "fold.vtp")
+    look = vizlight.look(tmp_path / "fold.vtp", size=SIZE, array="residue")
+    key = look.drawing.keys[0]
+    # The bar ends at the first and the last residue, and has numbers there.
+    assert (key["title"], key["clim"]) == ("fold, residue", (4, 64))
+    assert key["levels"] == [4, 10, 20, 30, 40, 50, 60, 64]
 
 
 def test_a_part_with_most_points_on_its_surface_shows_values_there():

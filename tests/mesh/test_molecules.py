@@ -87,25 +87,70 @@ def helix(count, chain):
     ]
 
 
-def test_a_backbone_is_one_smooth_curve_for_each_piece_of_a_chain(tmp_path):
+def test_a_backbone_is_one_closed_surface_for_each_piece_of_a_chain(tmp_path):
     water = "HETATM   99  O   HOH A  99       9.000   9.000   9.000  1.00  0.00           O  \n"
     lines = [*helix(40, "A"), water, *helix(40, "B")]
     mesh = vizlight.read(written(tmp_path, "".join(lines), "two.pdb"))
     assert mesh.active_scalars_name == "chain"
     assert meaning.flags(mesh, "chain") == {0: "A", 1: "B"}
     assert np.count_nonzero(mesh["backbone_mask"]) == 80
-    curves = molecules.backbone(mesh)
-    assert (curves.n_lines, {*curves["chain"]}) == (2, {0, 1})
-    # Beside the ends, a curve through points of a helix has its radius.
-    ends = curves.points - [0, 0, 0]
-    inner = (curves["chain"] == 0) & (curves["residue"] > 3) & (curves["residue"] < 37)
-    np.testing.assert_allclose(np.hypot(*ends[inner, :2].T), 2.3, atol=0.15)
-    assert np.linalg.norm(np.diff(curves.points[inner], axis=0), axis=1).max() < 0.9
+    solid = molecules.backbone(mesh)
+    assert (solid.is_manifold, {*solid["chain"]}) == (True, {0, 1})
+    assert pieces(solid) == 2
+    assert solid["residue"].min() == 1
+    assert solid["residue"].max() == 40
+    # Beside the ends, a ribbon through points of a helix has its radius.
+    inner = (solid["chain"] == 0) & (solid["residue"] > 3) & (solid["residue"] < 37)
+    np.testing.assert_allclose(np.hypot(*solid.points[inner, :2].T), 2.3, atol=0.45)
     del lines[20:23]
     gap = molecules.backbone(vizlight.read(written(tmp_path, "".join(lines), "gap.pdb")))
-    assert gap.n_lines == 3
+    assert pieces(gap) == 3
+    assert gap.is_manifold
+    assert not np.isin([21, 22, 23], gap["residue"][gap["chain"] == 0]).any()
     one = vizlight.read(written(tmp_path, "".join(helix(70, "A")), "one.pdb"))
     assert one.active_scalars_name == "residue"
+
+
+def pieces(surface):
+    return len({*surface.connectivity()["RegionId"]})
+
+
+HELIX = "HELIX    1   1 GLY A   11  GLY A   20  1                                  10    \n"
+SHEET = "SHEET    1   A 1 GLY A  25  GLY A  30  0 \n"
+
+
+def test_records_of_a_file_tell_its_helices_and_strands(tmp_path):
+    """They count even where the places would tell another kind."""
+    path = written(tmp_path, HELIX + SHEET + "".join([*helix(40, "A"), *helix(9, "B")]), "a.pdb")
+    atoms = vizlight.read(path)
+    kinds = np.zeros(49)
+    kinds[10:20], kinds[24:30] = 1, 2
+    np.testing.assert_array_equal(atoms["secondary_structure"], kinds)
+    flags = {0: "other", 1: "helix", 2: "strand"}
+    assert meaning.flags(atoms, "secondary_structure") == flags
+    solid = molecules.backbone(atoms)
+    axis = solid.points[:, 2] - 1.5 * (solid["residue"] - 1)
+    wide = [np.abs(axis[(solid["residue"] == i) & (solid["chain"] == 0)]).max() for i in (5, 15)]
+    assert wide[0] < 1.2 < wide[1]
+
+
+def test_records_of_cif_are_those_of_pdb(tmp_path):
+    gemmi = pytest.importorskip("gemmi")
+    path = written(tmp_path, HELIX + SHEET + "".join(helix(40, "A")), "a.pdb")
+    gemmi.read_pdb(str(path)).make_mmcif_document().write_file(str(tmp_path / "a.cif"))
+    of_pdb, of_cif = vizlight.read(path), vizlight.read(tmp_path / "a.cif")
+    assert of_pdb["secondary_structure"].max() == 2
+    np.testing.assert_array_equal(of_cif["secondary_structure"], of_pdb["secondary_structure"])
+
+
+def test_the_oxygen_of_a_peptide_is_marked_and_that_of_water_is_not(tmp_path):
+    def atom(name, x, residue):
+        line = ATOM.format(1, residue, x, 0, 0)
+        return line.replace(" CA ", f" {name:3}").replace("           C ", f"           {name[0]} ")
+
+    rows = [("CA", 0, 1), ("O", 2.4, 1), ("CA", 3.8, 2), ("O", 9, 2), ("O", 2.3, 3)]
+    mesh = vizlight.read(written(tmp_path, "".join(atom(*row) for row in rows), "a.pdb"))
+    assert mesh["backbone_mask"].tolist() == [1, 2, 1, 0, 2]
 
 
 def test_a_backbone_needs_a_molecule_of_residues(tmp_path):
@@ -114,6 +159,10 @@ def test_a_backbone_needs_a_molecule_of_residues(tmp_path):
         molecules.backbone(water)
     with pytest.raises(TypeError, match="atoms: expected a pyvista.PolyData"):
         molecules.backbone("1abc.pdb")
+    text = "".join(ATOM.format(i + 1, i + 1, 9.0 * i, 0, 0) for i in range(70))
+    apart = vizlight.read(written(tmp_path, text, "apart.pdb"))
+    assert molecules.backbone(apart).n_points == 0
+    assert vizlight.look(apart).mesh.n_points == 70
 
 
 CRYSTAL = """data_salt

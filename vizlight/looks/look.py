@@ -20,7 +20,7 @@ from vizlight.looks import film, map_parts, together
 from vizlight.looks import options as look_options
 from vizlight.looks.contents import Contents
 from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces
-from vizlight.looks.recipes.drawing import Case
+from vizlight.looks.recipes.drawing import Case, file_named
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, run, source, written
 from vizlight.looks.wishes import even_light, is_whole_earth
@@ -362,10 +362,8 @@ class Look:
 
 def _title(drawing: Drawing) -> str:
     """Return the title for a key without one: of a surface the name of its file."""
-    *_, source = drawing.layers[0].mesh.chain()
-    if drawing.words != "surface" or not isinstance(source, str | Path):
-        return drawing.words
-    return Path(source).name.partition(".")[0] or drawing.words
+    named = file_named(drawing.layers[0].mesh) if drawing.words == "surface" else ""
+    return named or drawing.words
 
 
 def _key_step(plotter: Step, key: dict[str, object]) -> Step:

@@ -9,10 +9,9 @@ import numpy as np
 import pyvista as pv
 import scipy
 from vtkmodules.vtkCommonDataModel import vtkMolecule
-from vtkmodules.vtkFiltersGeneral import vtkSplineFilter
 
 from vizlight import _check
-from vizlight.mesh import file_parts, meaning, polylines
+from vizlight.mesh import file_parts, meaning, ribbons
 from vizlight.model import formulas
 
 if TYPE_CHECKING:
@@ -31,14 +30,23 @@ _PLACE = re.compile(r"\s*[+-]?\d+\.?\d*\s*")
 _SYMBOL = re.compile(r"[A-Za-z]{1,3}\d*$")
 #: Point arrays of a PDB file: their columns, and what stands for none.
 _NUMBERS = {"residue": (22, 26, 0), "occupancy": (54, 60, 1.0), "b_factor": (60, 66, 0.0)}
+#: Records of a PDB file, the kind of which they tell, and the columns of the chain and its ends.
+_STRUCTURES = (("HELIX ", ribbons.HELIX, 19, 21, 33), ("SHEET ", ribbons.STRAND, 21, 22, 33))
 #: Field arrays of a volume with the atomic numbers and the places of the molecule in it.
 NUMBERS, PLACES = "atom_numbers", "atom_places"
 #: Name of their marks, and number of them from which a molecule is a long chain.
 BACKBONE, LONG = "backbone_mask", 60
-#: Largest distance in angstroms of two that follow each other, in proteins and in nucleic acids.
-_APART = {6: 4.5, 15: 9.0}
-#: Steps of curves through few and through many of them, in angstroms, and how many are many.
-_FINE, _COARSE, MANY = 0.6, 1.9, 5000
+#: Mark of the oxygen of an amino acid, and its largest distance in angstroms from its carbon.
+OXYGEN, _NEAR = 2, 3.0
+#: Name of the kinds of secondary structure of which a file tells.
+STRUCTURE = "secondary_structure"
+#: Atomic number of the atoms of backbones of proteins.
+PROTEIN = 6
+#: Largest distance in angstroms of two that follow each other, in proteins and in nucleic acids,
+#: and radii of their tubes.
+_APART, _TUBES = {PROTEIN: 4.5, 15: 9.0}, (0.4, 0.8)
+#: Number of residues from which they are many, which are drawn less finely.
+MANY = 5000
 #: Largest deviation in angstroms of the length of a bond from the sum of the radii of its atoms,
 #: and least share of such bonds where most atoms have none.
 OFF, USUAL = 0.25, 0.75
@@ -64,8 +72,9 @@ def of_pdb(path: Path) -> pv.PolyData:
     pyvista.PolyData
         Bonds, and points of atoms without any, with ``atom_type``, the atomic number, ``radius``,
         that of van der Waals, ``residue``, ``chain``, ``occupancy``, ``b_factor`` and
-        ``backbone_mask``, 1 for the atom that stands for a residue. Of atoms with several places
-        the first is taken.
+        ``backbone_mask``, 1 for the atom that stands for a residue and 2 for the oxygen of its
+        peptide; where the file tells of helices and strands, with ``secondary_structure``. Of atoms
+        with several places the first is taken.
 
     Raises
     ------
@@ -104,8 +113,20 @@ def of_pdb(path: Path) -> pv.PolyData:
         mesh, [line[21:22] for line in atoms],
         [(name[1:].strip() if name[:1] == " " else name, each.upper())
          for name, each in zip(names, elements, strict=True)],
+        _records(lines),
     )  # fmt: skip
     return mesh
+
+
+def _records(lines: Sequence[str]) -> list[tuple[str, int, int, int]]:
+    """Return the chain, the first and last residue, and the kind of helices and strands."""
+    found = []
+    for line in lines:
+        for word, kind, *starts in _STRUCTURES:
+            numbers = [line[start : start + 4].strip() for start in starts[1:]]
+            if line.startswith(word) and all(re.fullmatch(r"-?\d+", each) for each in numbers):
+                found.append((line[starts[0]], int(numbers[0]), int(numbers[1]), kind))
+    return found
 
 
 def of_cif(path: Path) -> pv.PolyData:
@@ -172,20 +193,59 @@ def _macromolecule(structure: Foreign, path: Path) -> pv.PolyData:
     mesh.point_data["occupancy"] = [atom.occ for _, _, atom in rows]
     mesh.point_data["b_factor"] = [atom.b_iso for _, _, atom in rows]
     names = [(atom.name, atom.element.name.upper()) for _, _, atom in rows]
-    attach_chains(mesh, [name for name, _, _ in rows], names)
+    parts = [(ribbons.HELIX, each) for each in structure.helices]
+    parts += [(ribbons.STRAND, each) for sheet in structure.sheets for each in sheet.strands]
+    ends = [
+        (each.start.chain_name, each.start.res_id.seqid.num, each.end.res_id.seqid.num, kind)
+        for kind, each in parts
+    ]
+    attach_chains(mesh, [name for name, _, _ in rows], names, ends)
     return mesh
 
 
 def attach_chains(
-    mesh: pv.PolyData, chains: Sequence[str], names: Sequence[tuple[str, str]]
+    mesh: pv.PolyData,
+    chains: Sequence[str],
+    names: Sequence[tuple[str, str]],
+    structure: Sequence[tuple[str, int, int, int]] = (),
 ) -> None:
-    """Attach the numbers of chains, with their names, and marks of the atoms of backbones."""
+    """Attach the numbers of chains, with their names, and marks of the atoms of backbones.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Atoms with ``residue``, which is changed.
+    chains : sequence of str
+        Name of the chain of each.
+    names : sequence of (str, str)
+        Name and element of each.
+    structure : sequence of (str, int, int, int)
+        Chain, first and last residue, and kind of each helix and strand of which the file tells.
+    """
     every = sorted({*chains})
     number = {name: i for i, name in enumerate(every)}
-    mesh.point_data["chain"] = [number[name] for name in chains]
-    mesh.point_data[BACKBONE] = np.array([name in _BACKBONE for name in names], dtype=np.uint8)
+    of_chain = np.array([number[name] for name in chains], dtype=np.intp)
+    mesh.point_data["chain"] = of_chain
+    marks = np.array([name in _BACKBONE for name in names], dtype=np.uint8)
+    places, carbons = np.asarray(mesh.points), np.flatnonzero(marks)
+    if len(carbons):
+        oxygens = np.flatnonzero([name == ("O", "O") for name in names])
+        owners = carbons[np.maximum(np.cumsum(marks)[oxygens].astype(np.intp) - 1, 0)]
+        near = np.linalg.norm(places[oxygens] - places[owners], axis=1) < _NEAR
+        marks[oxygens[near]] = OXYGEN
+    mesh.point_data[BACKBONE] = marks
     said = meaning.of(mesh)
     said.add_kinds("chain", [(i, name.strip(), ()) for i, name in enumerate(every)])
+    if structure and "residue" in mesh.point_data:
+        kinds = np.zeros(len(marks), dtype=np.uint8)
+        residues = np.asarray(mesh.point_data["residue"])
+        rows = {name: np.flatnonzero(of_chain == i) for name, i in number.items()}
+        for chain, first, last, kind in structure:
+            inside = rows.get(chain, rows[every[0]][:0])
+            inside = inside[(residues[inside] >= first) & (residues[inside] <= last)]
+            kinds[inside] = kind
+        mesh.point_data[STRUCTURE] = kinds
+        said.add_kinds(STRUCTURE, [(i, name, ()) for i, name in enumerate(ribbons.NAMES)])
     meaning.attach(mesh, said)
     if is_polymer(mesh):
         # Among thousands of atoms elements tell nothing of the fold.
@@ -195,11 +255,15 @@ def attach_chains(
 def is_polymer(mesh: pv.DataSet) -> bool:
     """Return whether a mesh is a molecule with long chains of residues."""
     marks = mesh.point_data.get(BACKBONE)
-    return marks is not None and int(np.count_nonzero(marks)) >= LONG
+    return marks is not None and int(np.count_nonzero(marks == 1)) >= LONG
 
 
 def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
-    """Return the backbones of the chains of a molecule as smooth curves.
+    """Return the backbones of the chains of a molecule as closed surfaces, a cartoon of its fold.
+
+    Helices are broad ribbons, strands of sheets arrows, and all else of a protein a thin tube, by
+    the records of the file or, without any, by the places of the alpha carbons. Nucleic acids are
+    thicker tubes.
 
     Parameters
     ----------
@@ -209,7 +273,7 @@ def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
     Returns
     -------
     pyvista.PolyData
-        Curves through the carbon of each amino acid, or the phosphorus of each nucleotide, with the
+        Surfaces along the carbon of each amino acid, or the phosphorus of each nucleotide, with the
         arrays of these atoms, interpolated. They end where the next is farther than in a whole
         chain.
 
@@ -217,33 +281,61 @@ def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
     ------
     TypeError, ValueError
         If it is no such molecule.
+
+    Notes
+    -----
+    Source: Labesse and others, Computer Applications in the Biosciences 13 (1997), for helices and
+    strands by places; Carson and Bugg, Journal of Molecular Graphics 4 (1986), for the turn of
+    ribbons by the oxygens of peptides.
     """
     if not isinstance(atoms, pv.PolyData):
         raise TypeError(_check.message("atoms", "a pyvista.PolyData", _check.describe(atoms)))
-    for name in (BACKBONE, "chain", "atom_type"):
+    needed = "chain", "atom_type"
+    for name in (BACKBONE, *needed):
         rows = atoms.point_data.get(name)
         if rows is None or rows.ndim != 1:
             expected = f"a molecule of a PDB or CIF file, with the point array {name!r}"
             raise ValueError(_check.message("atoms", expected, f"arrays {atoms.point_data.keys()}"))
-    marked = np.flatnonzero(atoms.point_data[BACKBONE])
-    places = np.asarray(atoms.points, dtype=np.float64)[marked]
-    chains, kinds = (np.asarray(atoms.point_data[name])[marked] for name in ("chain", "atom_type"))
-    most = np.select([kinds == kind for kind in _APART], list(_APART.values()), 0.0)
+    marks = np.asarray(atoms.point_data[BACKBONE])
+    marked = np.flatnonzero(marks == 1)
+    places = np.asarray(atoms.points, dtype=np.float64)
+    oxygens = np.full((len(marked), 3), np.nan)
+    of_residue = np.cumsum(marks == 1)[marks == OXYGEN] - 1
+    oxygens[of_residue] = places[marks == OXYGEN]
+    places = places[marked]
+    chains, elements = (np.asarray(atoms.point_data[name])[marked] for name in needed)
+    most = np.select([elements == each for each in _APART], list(_APART.values()), 0.0)
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    apart = (np.diff(chains) != 0) | (np.diff(kinds) != 0) | (steps > most[:-1])
-    ends = np.concatenate([[0], np.flatnonzero(apart) + 1, [len(marked)]])
-    lines = polylines.polydata(places, ends[: len(marked) + 1])
-    for name, rows in atoms.point_data.items():
+    joined = (np.diff(chains) == 0) & (np.diff(elements) == 0) & (steps <= most[:-1])
+    # One without neighbours has no curve.
+    kept = (np.append(joined, [False]) | np.concatenate([[False], joined]))[: len(marked)]
+    if not kept.any():
+        return pv.PolyData()
+    piece = np.concatenate([[0], np.cumsum(~joined)])[kept]
+    marked, places, elements = marked[kept], places[kept], elements[kept]
+    said = atoms.point_data.get(STRUCTURE)
+    kinds = ribbons.structure(places, piece) if said is None else np.asarray(said)[marked]
+    is_protein = elements == PROTEIN
+    surface, along = ribbons.swept(
+        places,
+        ribbons.sides(places, oxygens[kept], piece),
+        np.where(is_protein, kinds, ribbons.LOOP),
+        piece,
+        np.where(is_protein, *_TUBES),
+        fine=len(marked) < MANY,
+    )
+    below = np.minimum(along.astype(np.intp), len(marked) - 1)
+    after = np.minimum(below + 1, len(marked) - 1)
+    for name, column in atoms.point_data.items():
+        rows = np.asarray(column)[marked]
+        share = (along - below).reshape(-1, *[1] * (rows.ndim - 1))
+        if rows.dtype.kind != "f":
+            share = np.rint(share)
         if name != BACKBONE:
-            lines.point_data[name] = np.asarray(rows)[marked]
-    curves = vtkSplineFilter()
-    curves.SetInputData(lines)
-    curves.SetSubdivideToLength()
-    curves.SetLength(_FINE if len(marked) < MANY else _COARSE)
-    curves.Update()
-    smooth: pv.PolyData = pv.wrap(curves.GetOutput())
-    smooth.GetFieldData().ShallowCopy(atoms.GetFieldData())
-    return smooth
+            between = (1 - share) * rows[below] + share * rows[after]
+            surface.point_data[name] = between.astype(rows.dtype)
+    surface.GetFieldData().ShallowCopy(atoms.GetFieldData())
+    return surface
 
 
 def atoms_in(volume: pv.DataSet, /) -> pv.PolyData:

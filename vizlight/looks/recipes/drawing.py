@@ -6,6 +6,7 @@ import dataclasses
 import re
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -590,6 +591,12 @@ def colors_in(shown: Range, cmap: Foreign, unit: float = 1.0) -> Keywords:
 def _in_unit(values: Sequence[float], unit: float) -> tuple[float, ...]:
     """Return round numbers in another unit, without the rest of rounding."""
     return tuple(float(f"{unit * value:.12g}") for value in values)
+
+
+def file_named(mesh: Step) -> str:
+    """Return the name, without its suffixes, of the file that a step begins with, if it does."""
+    *_, source = mesh.chain()
+    return Path(source).name.partition(".")[0] if isinstance(source, str | Path) else ""
 
 
 def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | None = None) -> str:

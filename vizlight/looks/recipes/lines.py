@@ -9,10 +9,18 @@ import numpy as np
 import pyvista as pv
 import scipy
 
+from vizlight.draw.ticks import USUAL, even_levels
 from vizlight.filters.tint import RGB
 from vizlight.looks.contents import Contents
 from vizlight.looks.recipes import surfaces
-from vizlight.looks.recipes.drawing import LIGHTNESS, Drawing, Layer, colors_of_kinds, titled_length
+from vizlight.looks.recipes.drawing import (
+    LIGHTNESS,
+    Drawing,
+    Layer,
+    colors_of_kinds,
+    file_named,
+    titled_length,
+)
 from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
@@ -47,8 +55,8 @@ ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
 #: Most atoms of a molecule that are balls, their size in radii of van der Waals, and the sticks
 #: between them, in angstroms.
 MOST_BALLS, BALL, STICK = 1000, 0.2, {"radius": 0.1, "n_sides": 20}
-#: Tubes along backbones, in angstroms.
-TUBE = {"radius": 0.8, "n_sides": 12}
+#: Share of a bar of residues that is free between the number at an end and the next.
+CLOSE = 0.05
 #: Atoms up to whose number balls are large in a picture, and as much finer.
 FEW_BALLS, FINER = 60, 3
 #: Size in pixels of balls up to which they are squares on a map.
@@ -126,15 +134,28 @@ def molecule(case: Case) -> Drawing:
 
 
 def backbone(case: Case) -> Drawing:
-    """Draw the chains of a molecule as tubes along their backbones, in the colours of values."""
+    """Draw the chains of a molecule as ribbons and tubes, in the colours of values."""
     if case.needed_array.name in ("atom_type", "radius"):
         # Of these the atoms beside the backbone have others.
         return lines(case)
-    curves = Step("backbone", "files.backbone", case.data)
-    solid = Step("chains", ".tube", curves, **TUBE)
-    drawing = surfaces.values(replace(case, data=solid, contents=Contents(solid.run())))
-    words = f"backbone in the colours of {case.needed_array.name}"
-    return replace(drawing, words=words)
+    solid, name = Step("chains", "files.backbone", case.data), case.needed_array.name
+    if not solid.run().n_points:
+        # No two are near enough to each other.
+        return lines(case)
+    bar: Keywords = {}
+    wishes = case.wishes
+    ends = [float(end) for end in solid.run().get_data_range(name)]
+    if name == "residue" and "clim" not in wishes.colors and ends[0] < ends[1]:
+        # There are none beyond the first and the last.
+        wishes = replace(wishes, picture={**wishes.picture, "clim": tuple(ends)})
+        free = CLOSE * (ends[1] - ends[0])
+        inner = even_levels(ends[0] + free, ends[1] - free, USUAL)
+        bar["levels"] = [ends[0], *inner, ends[1]]
+    contents = Contents(solid.run())
+    drawing = surfaces.values(replace(case, data=solid, contents=contents, wishes=wishes))
+    named = f"{file_named(case.data)}, ".removeprefix(", ")
+    keys = [key | {"title": f"{named}{key['title']}"} | bar for key in drawing.keys]
+    return replace(drawing, words=f"backbone in the colours of {name}", keys=keys)
 
 
 def _width(case: Case) -> float:
