@@ -30,6 +30,14 @@ def test_a_strip_lies_along_the_picture():
     assert abs(right[1]) == pytest.approx(1)
 
 
+def test_what_has_no_side_up_lies_across_with_its_thin_side_in_depth():
+    ball = pv.Sphere().scale((2, 1, 9)).rotate_x(25).rotate_z(40)
+    found = framing.eye_across(ball)
+    right = np.cross(found.up, found.toward)
+    sizes = [np.ptp(ball.points @ way) for way in (found.toward, found.up, right)]
+    np.testing.assert_allclose(sizes, (1, 2, 9), rtol=0.02)
+
+
 def test_an_open_patch_is_seen_along_its_mean_normal():
     patch = pv.Plane(direction=(1, 2, 3), i_resolution=20, j_resolution=20)
     patch.points += 0.02 * np.sin(9 * patch.points[:, [1, 2, 0]])

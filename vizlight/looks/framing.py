@@ -283,6 +283,25 @@ def eye_around(surface: pv.PolyData, *, cut: bool = False) -> Viewpoint:
     return _around(corners, normals, _creases(surface), ways)
 
 
+def eye_across(mesh: pv.PolyData) -> Viewpoint:
+    """Return the eye for what has no side that is up: its long side across, its thin one in depth.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Mesh with points.
+    """
+    points = _some(np.asarray(mesh.points, dtype=np.float64))
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) < 2:
+        return ISOMETRIC
+    axes = np.linalg.eigh(np.cov(points.T))[1].T
+    # Of both senses the one along its largest part.
+    largest = np.argmax(np.abs(axes), axis=1)
+    axes *= np.sign(np.take_along_axis(axes, largest[:, None], axis=1))
+    return Viewpoint(_vector(axes[0]), _vector(axes[1]), False, "with its long side across")
+
+
 def _around(
     corners: Array, normals: Array, edges: Array, ways: list[Array], values: Array | None = None
 ) -> Viewpoint:

@@ -151,7 +151,7 @@ def swept(
     at : ndarray
         Place of each of its points along the residues, of which the first is at 0.
     """
-    rows, around = (8, 20) if fine else (3, 12)
+    rows, around = (8, 20) if fine else (3, 10)
     before, after = _neighbours(piece)
     is_end = (before == np.arange(len(piece))) | (after == np.arange(len(piece)))
     kinds = np.where(is_end, LOOP, kinds)

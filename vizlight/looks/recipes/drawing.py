@@ -226,6 +226,8 @@ class Case:
         Question of the light.
     array : Named, optional
         Array that is shown.
+    viewpoint : Viewpoint, optional
+        From where it is seen, where a recipe knows a better place than that of any mesh.
     """
 
     data: Step
@@ -233,6 +235,7 @@ class Case:
     wishes: Wishes
     question: str
     array: Named | None = None
+    viewpoint: Viewpoint | None = None
 
     @cached_property
     def surface(self) -> Step:
@@ -311,6 +314,8 @@ class Case:
         """Return from where a mesh is seen, if no view is given in its place."""
         if self.wishes.view is not None or self.wishes.frame is not None:
             return ISOMETRIC
+        if self.viewpoint is not None:
+            return self.viewpoint
         if self.box is not None:
             return eye_around(self.surface.run(), cut=True)
         array = self.array

@@ -12,6 +12,7 @@ import scipy
 from vizlight.draw.ticks import USUAL, even_levels
 from vizlight.filters.tint import RGB
 from vizlight.looks.contents import Contents
+from vizlight.looks.framing import eye_across
 from vizlight.looks.recipes import surfaces
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
@@ -151,8 +152,9 @@ def backbone(case: Case) -> Drawing:
         free = CLOSE * (ends[1] - ends[0])
         inner = even_levels(ends[0] + free, ends[1] - free, USUAL)
         bar["levels"] = [ends[0], *inner, ends[1]]
-    contents = Contents(solid.run())
-    drawing = surfaces.values(replace(case, data=solid, contents=contents, wishes=wishes))
+    across = eye_across(solid.run())
+    chains = replace(case, data=solid, contents=Contents(solid.run()), wishes=wishes)
+    drawing = surfaces.values(replace(chains, viewpoint=across))
     named = f"{file_named(case.data)}, ".removeprefix(", ")
     keys = [key | {"title": f"{named}{key['title']}"} | bar for key in drawing.keys]
     return replace(drawing, words=f"backbone in the colours of {name}", keys=keys)
