@@ -69,8 +69,8 @@ def test_a_surface_is_closed_with_outward_normals(name, fine):
     length = np.linalg.norm(area, axis=1)
     towards = np.einsum("ij,ij->i", area, normals[surface.regular_faces].mean(axis=1))
     big = length > 1e-3 * length.max()
-    # But for the flat back of an arrow they are those of the faces.
-    assert np.mean(towards[big] > 0.8 * length[big]) > 0.95
+    # But for the flat back of an arrow they are those of the faces, as far as these are small.
+    assert np.mean(towards[big] > (0.8 if fine else 0.6) * length[big]) > 0.95
     assert (towards[big] > 0).mean() > 0.98
 
 

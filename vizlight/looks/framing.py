@@ -284,7 +284,7 @@ def eye_around(surface: pv.PolyData, *, cut: bool = False) -> Viewpoint:
 
 
 def eye_across(mesh: pv.PolyData) -> Viewpoint:
-    """Return the eye for what has no side that is up: its long side across, its thin one in depth.
+    """Return the eye for data without a side that is up: long side across, thin one in depth.
 
     Parameters
     ----------
