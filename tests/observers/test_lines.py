@@ -177,6 +177,10 @@ def test_segments_are_in_pixels_and_each_line_is_far_from_the_others(block, monk
     np.testing.assert_allclose(few.start, [[60, 40]], atol=1e-4)
     np.testing.assert_allclose(few.along, [100 + 2 * JUMP], atol=1e-3)
     assert (few.line, few.number.max(), few.number[40, 75]) == ([2], 0, 0)
+    second = (pixels.part == 1) & (pixels.cell == 1)
+    both = pixels._replace(part=np.where(second, 2, pixels.part))
+    numbers = segments_of([ground, part, part], both, camera).number
+    assert (numbers[40, 45], numbers[40, 75], numbers[30, 60]) == (0, 2, 1)
     ways = few.ways_at(np.array([-5, 19, 21, 50 + JUMP, 90 + 2 * JUMP, np.inf, np.nan]))
     right, up = [20, 0], [0, -40]
     np.testing.assert_allclose(ways, [right, right, right, up, right, up, up], atol=1e-4)

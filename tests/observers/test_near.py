@@ -14,7 +14,7 @@ from vizlight.observers import near as near_cells
 from vizlight.observers import samples
 from vizlight.observers.near import near
 from vizlight.shading.options import LightOptions
-from vizlight.vtk.drawn import DrawnTriangles
+from vizlight.vtk.drawn import DrawnSegments, DrawnTriangles
 
 SCENE = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(1, 2, 2)))
 
@@ -211,3 +211,16 @@ def test_memory_goes_by_the_triangles_and_not_by_the_surface():
     tracemalloc.stop()
     # A table of a megabyte, and blocks of 2^16 polygons.
     assert most < 6e6
+
+
+def test_memory_goes_by_the_segments_and_not_by_the_lines():
+    ids = np.arange(1 << 19).reshape(-1, 1 << 12)
+    mesh = pv.PolyData()
+    mesh.points = np.random.default_rng(0).random((ids.size, 3), dtype=np.float32)
+    mesh.lines = np.insert(ids, 0, ids.shape[1], axis=1).ravel()
+    lines = DrawnSegments.of(mesh)
+    tracemalloc.start()
+    near_cells.tangents_at(mesh, lines, ids[:, 3], lambda part: np.asarray(part.points))
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 16e6
