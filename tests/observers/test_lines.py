@@ -7,6 +7,7 @@ from sheets import arrows, drawn_plain, rings, seen_as, sheet
 
 import vizlight
 from vizlight.draw.cameras import camera_on
+from vizlight.observers import lines as marks
 from vizlight.observers.eye import Eye
 from vizlight.observers.lines import (
     JUMP,
@@ -147,7 +148,9 @@ def test_the_bits_of_two_sides_are_those_of_the_channel(told, wrongly, total, bi
     assert two_sides(told, wrongly, total) == pytest.approx(bits, abs=2e-3)
 
 
-def test_segments_are_in_pixels_and_each_line_is_far_from_the_others():
+@pytest.mark.parametrize("block", [1, 2, 1 << 16])
+def test_segments_are_in_pixels_and_each_line_is_far_from_the_others(block, monkeypatch):
+    monkeypatch.setattr(marks, "BLOCK", block)
     points = [[-0.5, 0, 0], [0, 0, 0], [0.5, 0, 0], [0, -0.5, 1], [0, 0.5, 1]]
     mesh = pv.PolyData(np.array(points, float), lines=[3, 0, 1, 2, 2, 3, 4])
     mesh["IntegrationTime"] = np.array([0, 1, 2, 5, 4.0])
@@ -168,6 +171,19 @@ def test_segments_are_in_pixels_and_each_line_is_far_from_the_others():
     assert (found.number[40, 45], found.number[40, 75], found.number[30, 60]) == (0, 1, 2)
     assert found.number[5, 5] == -1
     assert segments_of([ground], pixels, camera) is None
+    # Two meshes of lines, of which one segment is seen: the others are still known along the lines.
+    some = pixels.take(pixels.cell == 1)
+    few = segments_of([ground, part, part], some._replace(part=some.part + 1), camera)
+    np.testing.assert_allclose(few.start, [[60, 40]], atol=1e-4)
+    np.testing.assert_allclose(few.along, [100 + 2 * JUMP], atol=1e-3)
+    assert (few.line, few.number.max(), few.number[40, 75]) == ([2], 0, 0)
+    second = (pixels.part == 1) & (pixels.cell == 1)
+    both = pixels._replace(part=np.where(second, 2, pixels.part))
+    numbers = segments_of([ground, part, part], both, camera).number
+    assert (numbers[40, 45], numbers[40, 75], numbers[30, 60]) == (0, 2, 1)
+    ways = few.ways_at(np.array([-5, 19, 21, 50 + JUMP, 90 + 2 * JUMP, np.inf, np.nan]))
+    right, up = [20, 0], [0, -40]
+    np.testing.assert_allclose(ways, [right, right, right, up, right, up, up], atol=1e-4)
 
 
 @pytest.mark.parametrize("ahead", [1, -1])

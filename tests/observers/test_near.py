@@ -10,10 +10,11 @@ import pyvista as pv
 import vizlight
 from vizlight import Light, Scene, View
 from vizlight.draw.sources import with_sharp_edges
+from vizlight.observers import near as near_cells
 from vizlight.observers import samples
 from vizlight.observers.near import near
 from vizlight.shading.options import LightOptions
-from vizlight.vtk.drawn import DrawnTriangles
+from vizlight.vtk.drawn import DrawnSegments, DrawnTriangles
 
 SCENE = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(1, 2, 2)))
 
@@ -145,6 +146,51 @@ def test_colors_without_light_need_no_normals(monkeypatch):
         assert part.near(np.array([3, 5])).inputs.normals is None
 
 
+def curls(*sizes):
+    """Return curved lines that have some points in common, the last closed."""
+    points = np.random.default_rng(3).normal(size=(60, 3)).cumsum(axis=0)
+    ids = [np.random.default_rng(size).permutation(60)[:size] for size in sizes]
+    ids[-1][-1] = ids[-1][0]
+    return pv.PolyData(points, lines=np.concatenate([[len(x), *x] for x in ids]))
+
+
+@pytest.mark.parametrize("block", [1, 40, 1 << 16])
+def test_tangents_of_lines_are_those_of_the_whole(block, monkeypatch):
+    mesh = curls(20, 3, 30, 12, 25)
+    mesh["v"] = np.arange(60.0)
+    light, chosen = LightOptions(line_field=True), np.array([80, 3, 4, 20, 3])
+    whole = samples.part_on(mesh, SCENE, light, values=mesh["v"]).near(chosen)
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    monkeypatch.setattr(near_cells, "BLOCK", block)
+    part = samples.part_on(mesh, SCENE, light, values=mesh["v"])
+    assert part.inputs.tangents is None
+    assert part.has_tangents
+    part = part.near(chosen)
+    assert part.inputs.line_field
+    for rows, expected in (
+        (part.inputs.tangents, whole.inputs.tangents),
+        (part.inputs.points, whole.inputs.points),
+        (part.values, whole.values),
+    ):
+        np.testing.assert_array_equal(rows[part.cells], expected[whole.cells])
+
+
+@pytest.mark.parametrize("how", [{"tangents": "V"}, {"positions": "V"}, {"conditioned": True}, {}])
+def test_tangents_that_are_given_or_joined_are_those_of_the_whole(how, monkeypatch):
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    mesh = curls(20, 30) if how else curls(20, 2, 30)
+    mesh["V"] = mesh.points[::-1].copy()
+    mesh.point_data.active_normals_name = "V"
+    assert samples.part_on(mesh, SCENE, LightOptions(**how)).inputs.tangents is not None
+
+
+def test_options_that_do_not_fit_lines_are_refused_near_their_segments_too(monkeypatch):
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    part = samples.part_on(curls(20, 30), SCENE, LightOptions(normals="V"), "block 2")
+    with pytest.raises(ValueError, match="block 2: normals: expected no normals"):
+        part.near(np.array([3]))
+
+
 @pytest.mark.opengl
 def test_a_large_surface_is_read_like_a_small_one(monkeypatch):
     mesh, scene = bare(pv.Box(level=20)), vizlight.presets.shape()
@@ -165,3 +211,16 @@ def test_memory_goes_by_the_triangles_and_not_by_the_surface():
     tracemalloc.stop()
     # A table of a megabyte, and blocks of 2^16 polygons.
     assert most < 6e6
+
+
+def test_memory_goes_by_the_segments_and_not_by_the_lines():
+    ids = np.arange(1 << 19).reshape(-1, 1 << 12)
+    mesh = pv.PolyData()
+    mesh.points = np.random.default_rng(0).random((ids.size, 3), dtype=np.float32)
+    mesh.lines = np.insert(ids, 0, ids.shape[1], axis=1).ravel()
+    lines = DrawnSegments.of(mesh)
+    tracemalloc.start()
+    near_cells.tangents_at(mesh, lines, ids[:, 3], lambda part: np.asarray(part.points))
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 16e6

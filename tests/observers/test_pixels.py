@@ -8,6 +8,7 @@ from vizlight.draw.cameras import camera_on
 from vizlight.observers import pixels
 from vizlight.observers.pixels import Cells
 from vizlight.observers.samples import rays, weights
+from vizlight.vtk.arrays import GridPoints
 
 pytestmark = pytest.mark.opengl
 
@@ -96,10 +97,12 @@ def test_lines_of_a_diameter_are_bands_of_its_width_and_no_narrower_than_asked()
     points = np.array([[-0.5, 0, 0], [0.5, 0, 0], [0.5, 0, 1]], float)
     lines = Cells(points, np.array([[0, 1], [2, 1]]), 3.0, 0.2)
     camera = above(parallel=True)
-    np.testing.assert_allclose(lines.widths(camera, 100), [10, 10])
-    np.testing.assert_allclose(lines.widths(above(), 100), [10, 20])
-    np.testing.assert_allclose(lines.widths(camera, 20), [3, 3])
-    np.testing.assert_allclose(lines._replace(diameter=None).widths(camera, 100), [3, 3])
+    both = np.array([0, 1])
+    np.testing.assert_allclose(lines.widths(both, camera, 100), [10, 10])
+    np.testing.assert_allclose(lines.widths(both, above(), 100), [10, 20])
+    np.testing.assert_allclose(lines.widths(both[1:], above(), 100), [20])
+    np.testing.assert_allclose(lines.widths(both, camera, 20), [3, 3])
+    np.testing.assert_allclose(lines._replace(diameter=None).widths(both, camera, 100), [3, 3])
     bands = pv.PolyData(lines.data(slice(0, 2), camera, 100))
     where = bands.points.reshape(-1, 4, 3)[0]
     np.testing.assert_allclose(np.abs(where[:, :2]), np.tile([0.5, 0.1], (4, 1)), atol=1e-6)
@@ -123,6 +126,30 @@ def test_cells_drawn_in_blocks_are_those_of_one_drawing(monkeypatch):
     assert {0, 1} == {*whole.part}
     for this, other in zip(whole[:4], blocks[:4], strict=True):
         np.testing.assert_array_equal(this, other)
+
+
+@pytest.mark.parametrize(
+    "corners", [[[3, 5], [5, 4]], [[90, 7], [7, 40], [3, 7]], [[0, 8], [1, 8]], [[0, 7], [1, 7]]]
+)
+def test_cells_take_the_points_between_their_corners_unless_these_are_far_apart(corners):
+    grid, corners = pv.ImageData(dimensions=(10, 10, 1)), np.array(corners)
+    for source in (np.asarray(grid.points), GridPoints(grid)):
+        points, own = pixels.with_own_points(source, corners)
+        np.testing.assert_array_equal(points[own], grid.points[corners])
+        # Twice as many points in a row as corners at most.
+        spread = np.ptp(corners) + 1
+        assert len(points) == (spread if spread <= 2 * corners.size else len(np.unique(corners)))
+
+
+def test_a_drawing_has_blocks_in_their_order_and_no_more_than_two_full_ones(monkeypatch):
+    monkeypatch.setattr(pixels, "BLOCK", 10)
+    sizes = [10, 10, 4, 10, 3, 3, 3, 3, 9]
+    blocks = [pixels._Block(i, None, slice(5, 5 + size)) for i, size in enumerate(sizes)]
+    drawings = pixels._drawings(blocks)
+    assert [[block.size for block in drawing] for drawing in drawings] == [
+        [10], [10], [4, 10], [3, 3, 3, 3], [9]
+    ]  # fmt: skip
+    assert [block for drawing in drawings for block in drawing] == blocks
 
 
 def test_occluders_hide_cells_and_take_no_pixels():

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from vizlight.mesh.subdivision import simplices
 from vizlight.vtk import drawn
-from vizlight.vtk.drawn import DrawnTriangles
+from vizlight.vtk.drawn import DrawnSegments, DrawnTriangles
 
 
 def polygons():
@@ -88,3 +89,27 @@ def test_plain_polygons_of_a_grid_are_a_surface_and_other_meshes_are_not():
     for mesh in (hidden, pv.ImageData(dimensions=(3, 3, 3)), pv.Line(), pv.PolyData(np.eye(3)),
                  pv.UnstructuredGrid(), pv.ImageData(dimensions=(5, 1, 1))):  # fmt: skip
         assert DrawnTriangles.of(mesh) is None
+
+
+@pytest.mark.parametrize("sizes", [(4, 2, 3, 2), (3, 3), (2, 2, 2)])
+def test_segments_are_those_of_each_line(sizes):
+    ids = np.random.default_rng(0).permutation(sum(sizes))
+    lines = [[len(x), *x] for x in np.split(ids, np.cumsum(sizes)[:-1])]
+    mesh = pv.PolyData(np.zeros((sum(sizes), 3)), verts=[1, 0], lines=np.concatenate(lines))
+    found, expected = DrawnSegments.of(mesh), simplices(mesh)
+    assert found.shape == expected.shape
+    assert found.may_join == (2 in sizes)
+    np.testing.assert_array_equal(found[:], expected)
+    np.testing.assert_array_equal(found[1:3], expected[1:3])
+    np.testing.assert_array_equal(found[np.array([2, 0])], expected[[2, 0]])
+    np.testing.assert_array_equal(found.sizes(np.array([1, 0])), [sizes[1], sizes[0]])
+
+
+def test_lines_of_a_point_and_lines_beside_faces_have_no_segments_in_memory():
+    mesh = pv.PolyData(np.eye(3), lines=[1, 0, 2, 1, 2])
+    assert DrawnSegments.of(mesh) is None
+    assert DrawnSegments.of(pv.Plane()) is None
+    assert DrawnSegments.of(polygons()) is None
+    hidden = pv.Line()
+    hidden.cell_data["vtkGhostType"] = np.zeros(1, np.uint8)
+    assert DrawnSegments.of(hidden) is None

@@ -171,12 +171,9 @@ def _straight(lines: Segments, at: Array, line: Indices, other: Indices) -> Bool
     sine = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
     reach = (lines.width[other] / 2 + BESIDE[-1]) / sine
     place = lines.along[line] + np.einsum("ij,ij->i", at - lines.start[line], u)
-    straight = np.ones(len(line), dtype=np.bool_)
-    for far in (place - reach, place + reach):
-        there = np.clip(np.searchsorted(lines.along, far, side="right") - 1, 0, None)
-        way = _unit(lines.way[there])
-        straight &= np.einsum("ij,ij->i", way, u) >= STRAIGHT
-    return straight
+    way = _unit(lines.ways_at(np.concatenate([place - reach, place + reach])))
+    straight = np.einsum("ij,ij->i", way, np.concatenate([u, u])) >= STRAIGHT
+    return np.asarray(straight.reshape(2, -1).all(axis=0))
 
 
 def _read(seen: SeenPicture, places: Array) -> Array:

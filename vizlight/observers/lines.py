@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.ndimage import gaussian_filter, uniform_filter
 
+from vizlight import _pool
 from vizlight.model.kernels import unit_rows
 from vizlight.observers.eye import means
-from vizlight.observers.pixels import in_pixels, visible
+from vizlight.observers.pixels import in_pixels, visible, with_own_points
 from vizlight.observers.samples import dots
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     import pyvista as pv
 
@@ -33,10 +34,12 @@ JUMP = 1e6
 WINDOW, AROUND = 8.0, 4
 #: Least number of pixels of both ends of a stroke whose sense is read.
 END = 3
+#: Number of segments whose places are found at once.
+BLOCK = 1 << 16
 
 
 class Segments(NamedTuple):
-    """Segments of all lines of a picture, in pixels from the upper left corner.
+    """Segments of lines that a picture shows, in pixels from the upper left corner.
 
     Attributes
     ----------
@@ -52,6 +55,8 @@ class Segments(NamedTuple):
         Width of the line in pixels.
     ahead : ndarray, shape (S,)
         1 where the sense of the data is that of the segment, -1 against it, 0 without a sense.
+    course : AllSegments or None
+        All segments of the lines, if these are those that are seen.
     """
 
     number: Indices
@@ -61,6 +66,13 @@ class Segments(NamedTuple):
     line: Indices
     width: Array
     ahead: Array
+    course: AllSegments | None = None
+
+    def ways_at(self, along: Array) -> Array:
+        """Return the vectors of the segments at places along the lines, also of hidden ones."""
+        if self.course is not None:
+            return self.course.ways_at(along)
+        return self.way[_last(self.along, along)]
 
     def places(self, row: Indices, column: Indices) -> tuple[Indices, Array]:
         """Return the segments that pixels show, and how far along the lines the pixels are."""
@@ -86,35 +98,104 @@ def segments_of(parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera) ->
     """
     width, height = pixels.size
     number = np.full((height, width), -1, dtype=np.intp)
-    starts, ways, widths, breaks, ahead = [], [], [], [], []
+    widths: list[Array] = []
+    ahead: list[Array] = []
+    seen: dict[int, Indices] = {}
     count = 0
     for i, part in enumerate(parts):
-        if part.kind != "line":
-            continue
-        shows = pixels.part == i
-        number[pixels.row[shows], pixels.column[shows]] = count + pixels.cell[shows]
-        places = in_pixels(camera, pixels.size, np.asarray(part.inputs.points[:]))
-        cells = part.cells[:]
-        starts.append(places[cells[:, 0]])
-        ways.append(places[cells[:, 1]] - starts[-1])
-        widths.append(part.drawn.widths(camera, height))
-        breaks.append(np.insert(cells[1:, 0] != cells[:-1, 1], 0, True))
-        ahead.append(np.broadcast_to(0.0, len(cells)) if part.ahead is None else part.ahead)
-        count += len(cells)
-    if not count:
+        if part.kind == "line":
+            shows = pixels.part == i
+            seen[i], which = np.unique(pixels.cell[shows], return_inverse=True)
+            number[pixels.row[shows], pixels.column[shows]] = count + which
+            widths.append(part.drawn.widths(seen[i], camera, height))
+            ahead.append(part.ahead(seen[i]))
+            count += len(seen[i])
+    if not seen:
         return None
-    start, way = _joined(starts), _joined(ways)
-    length = np.nan_to_num(np.hypot(way[:, 0], way[:, 1]))
-    line = np.cumsum(np.concatenate(breaks)) - 1
-    along = np.zeros(count)
-    np.cumsum(length[:-1], out=along[1:])
-    along += JUMP * line
-    return Segments(number, start, way, along, line, _joined(widths), _joined(ahead))
+    course = AllSegments(parts, pixels.size, camera)
+    columns = zip(*course.rows(seen), strict=True)
+    start, way, along, line = (np.concatenate(column) for column in columns)
+    width_of, sense = np.concatenate(widths), np.concatenate(ahead)
+    return Segments(number, start, way, along, line, width_of, sense, course)
 
 
-def _joined(rows: Sequence[Array]) -> Array:
-    """Return arrays one after the other; a single one is not copied."""
-    return rows[0] if len(rows) == 1 else np.concatenate(rows)
+class _Rows(NamedTuple):
+    """Some rows of the arrays of :class:`Segments`."""
+
+    start: Array
+    way: Array
+    along: Array
+    line: Indices
+
+
+class AllSegments:
+    """All segments of the lines of a picture, made in blocks and not stored.
+
+    Parameters
+    ----------
+    parts : sequence of SeenMesh
+        Meshes that the picture shows.
+    size : (int, int)
+        Width and height of the picture.
+    camera : pyvista.Camera
+        Camera of the picture.
+    """
+
+    def __init__(self, parts: Sequence[SeenMesh], size: tuple[int, int], camera: pv.Camera) -> None:
+        self._parts, self._size, self._camera = parts, size, camera
+        self._blocks = [
+            (i, rows)
+            for i, part in enumerate(parts)
+            if part.kind == "line"
+            for rows in _pool.blocks(len(part.cells), BLOCK)
+        ]
+        #: Number of the last line, and length of all segments, before each block that is known.
+        self._before = [(-1, 0.0)]
+        self._begin: Array = np.zeros(0)
+
+    def rows(self, seen: Mapping[int, Indices]) -> Iterator[_Rows]:
+        """Yield the rows of some segments of each part, by their rising numbers."""
+        begin = []
+        for block, (i, rows) in enumerate(self._blocks):
+            all_of_block = self._made(block)
+            begin.append(all_of_block.along[0])
+            first, last = np.searchsorted(seen[i], (rows.start, rows.stop))
+            chosen = seen[i][first:last] - rows.start
+            start, way, along, line = all_of_block
+            yield _Rows(start[chosen], way[chosen], along[chosen], line[chosen])
+        self._begin = np.array(begin)
+
+    def ways_at(self, along: Array) -> Array:
+        """Return the vectors of the segments at places along the lines, after ``rows``."""
+        ways = np.empty((len(along), 2))
+        of_place = _last(self._begin, along)
+        for block in np.unique(of_place):
+            here = np.flatnonzero(of_place == block)
+            rows = self._made(int(block))
+            ways[here] = rows.way[_last(rows.along, along[here])]
+        return ways
+
+    def _made(self, block: int) -> _Rows:
+        """Return all rows of a block; those of the one before were made already."""
+        i, rows = self._blocks[block]
+        part, (line, length) = self._parts[i], self._before[block]
+        cells = np.asarray(part.cells[rows])
+        points, corners = with_own_points(part.inputs.points, cells)
+        places = in_pixels(self._camera, self._size, points)
+        start = places[corners[:, 0]]
+        way = places[corners[:, 1]] - start
+        # A segment that does not begin where the one before ends is of another line.
+        end = part.cells[rows.start - 1 : rows.start][:, 1] if rows.start else [-1]
+        lines = line + np.cumsum(cells[:, 0] != np.append(end, cells[:-1, 1]))
+        along = np.cumsum(np.append(length, np.nan_to_num(np.hypot(way[:, 0], way[:, 1]))))
+        if block + 1 == len(self._before):
+            self._before.append((int(lines[-1]), float(along[-1])))
+        return _Rows(start, way, along[:-1] + JUMP * lines, lines)
+
+
+def _last(rising: Array, values: Array) -> Indices:
+    """Return the last of rising numbers that is not above each of some values, else the first."""
+    return np.clip(np.searchsorted(rising, values, side="right") - 1, 0, None)
 
 
 class Strokes(NamedTuple):

@@ -1,4 +1,4 @@
-"""The surroundings of some triangles of a large surface, as a mesh of their own."""
+"""The surroundings of some triangles of a large surface, and of some segments of many lines."""
 
 from __future__ import annotations
 
@@ -14,11 +14,14 @@ from vizlight.observers.pixels import rows_of
 from vizlight.vtk.arrays import array_of, points_of
 from vizlight.vtk.cells import places, triangles
 from vizlight.vtk.corners import all_slivers, joined
-from vizlight.vtk.drawn import DrawnTriangles
+from vizlight.vtk.drawn import BLOCK, DrawnTriangles
 
 if TYPE_CHECKING:
-    from vizlight._types import Indices, Keywords
+    from collections.abc import Callable
+
+    from vizlight._types import Array, Indices, Keywords
     from vizlight.shading.options import LightOptions
+    from vizlight.vtk.drawn import DrawnSegments
 
 #: Name of a temporary point array, chosen not to clash with a user's array.
 PLACE = "vizlight place"
@@ -91,6 +94,39 @@ def near(mesh: pv.DataSet, surface: DrawnTriangles, cells: Indices, light: Light
     place: Indices = np.asarray(split.point_data[PLACE])
     at = _corners_of(split, place, np.searchsorted(around, polygon), at)
     return Near(split, own, at, origin[place])
+
+
+def tangents_at(
+    mesh: pv.DataSet,
+    lines: DrawnSegments,
+    points: Indices,
+    tangents_of: Callable[[pv.PolyData], Array],
+) -> Array:
+    """Return the tangents of lines at some of their points, made of some lines at a time.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh.
+    lines : DrawnSegments
+        Its segments; none may be joined with those of another line.
+    points : ndarray of int, shape (M,)
+        Rising numbers of points of lines.
+    tangents_of : callable
+        Function from a mesh of lines to the tangents at its points.
+    """
+    around, tangents = lines.around(points), np.zeros((len(points), 3))
+    group = np.cumsum(lines.sizes(around)) // BLOCK
+    for some in np.split(around, np.flatnonzero(np.diff(group)) + 1):
+        ids, ends = lines.corners(some)
+        origin, ids = np.unique(ids, return_inverse=True)
+        part = pv.PolyData()
+        part.points = rows_of(points_of(mesh, None), origin)
+        part.SetLines(cell_array(ids, ends))
+        # A point of several lines has the tangent of the last.
+        chosen = np.isin(origin, points)
+        tangents[np.searchsorted(points, origin[chosen])] = tangents_of(part)[chosen]
+    return tangents
 
 
 def _with_rows(

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices, Slice
     from vizlight.shading.display import Bytes
     from vizlight.shading.inputs import ArraySource
-    from vizlight.vtk.drawn import DrawnTriangles
+    from vizlight.vtk.drawn import DrawnCells
 
 #: Number of cells that are drawn at once, so that memory goes by pixels.
 BLOCK = 1 << 19
@@ -48,7 +48,7 @@ class Cells(NamedTuple):
     ----------
     points : ArraySource, shape (N, 3)
         Points of the mesh.
-    corners : ndarray of int or DrawnTriangles, shape (C, s)
+    corners : ndarray of int or DrawnCells, shape (C, s)
         Points, segments or triangles.
     width : float
         Width of points and of lines in pixels, the least width of lines that have a diameter.
@@ -57,7 +57,7 @@ class Cells(NamedTuple):
     """
 
     points: ArraySource
-    corners: Indices | DrawnTriangles
+    corners: Indices | DrawnCells
     width: float
     diameter: float | None = None
 
@@ -66,14 +66,7 @@ class Cells(NamedTuple):
 
         Its points are those of these cells.
         """
-        corners = np.asarray(self.corners[rows])
-        low, high = int(corners.min()), int(corners.max()) + 1
-        points: Array
-        if high - low > SPARSE * corners.size:
-            ids, corners = np.unique(corners, return_inverse=True)
-            points, corners = rows_of(self.points, ids), corners.reshape(-1, self.corners.shape[1])
-        else:
-            points, corners = np.asarray(self.points[low:high]), corners - low
+        points, corners = with_own_points(self.points, np.asarray(self.corners[rows]))
         if self.diameter is not None:
             points, corners = self._bands(points, corners, camera, height)
         kind = corners.shape[1]
@@ -85,12 +78,11 @@ class Cells(NamedTuple):
         (data.SetVerts, data.SetLines, data.SetPolys)[kind - 1](cells)
         return data
 
-    def widths(self, camera: pv.Camera, height: int) -> Array:
-        """Return the widths in pixels at the corners' beginnings, in a picture of some height."""
-        count = len(self.corners)
+    def widths(self, cells: Indices, camera: pv.Camera, height: int) -> Array:
+        """Return the widths in pixels where some cells begin, in a picture of some height."""
         if self.diameter is None:
-            return np.broadcast_to(self.width, count)
-        points = np.asarray(self.points[:], dtype=np.float64)[self.corners[:, 0]]
+            return np.broadcast_to(self.width, len(cells))
+        points = rows_of(self.points, self.corners[cells][:, 0]).astype(np.float64)
         return np.asarray(np.maximum(self.diameter / footprint(camera, points, height), self.width))
 
     def _bands(
@@ -120,6 +112,15 @@ def rows_of(source: ArraySource, ids: Indices) -> Array:
     """Return rows of points or of an array by their numbers."""
     rows: Array = np.asarray(source.at(ids) if isinstance(source, GridPoints) else source[:][ids])
     return rows
+
+
+def with_own_points(source: ArraySource, corners: Indices) -> tuple[Array, Indices]:
+    """Return points that some cells need, and the corners of the cells among these."""
+    low, high = int(corners.min()), int(corners.max()) + 1
+    if high - low > SPARSE * corners.size:
+        ids, own = np.unique(corners, return_inverse=True)
+        return rows_of(source, ids), own.reshape(corners.shape)
+    return np.asarray(source[low:high]), corners - low
 
 
 class Pixels(NamedTuple):

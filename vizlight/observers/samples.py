@@ -14,7 +14,7 @@ from vizlight.filters.lighting import part_of
 from vizlight.mesh import subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import length_rows, unit_rows
-from vizlight.observers.near import near
+from vizlight.observers.near import near, tangents_at
 from vizlight.observers.pixels import Cells, rows_of, toward_eye
 from vizlight.scene import Scene, View
 from vizlight.scene.view import as_view, is_camera
@@ -23,7 +23,7 @@ from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.verify.between import Places, interpolated, mean_spaces
 from vizlight.vtk.arrays import points_of
-from vizlight.vtk.drawn import DrawnTriangles
+from vizlight.vtk.drawn import DrawnCells, DrawnSegments, DrawnTriangles
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -199,11 +199,12 @@ class SeenMesh:
         Kind of its cells.
     mesh : pyvista.DataSet
         Mesh.
-    cells : ndarray of int or DrawnTriangles, shape (C, s)
+    cells : ndarray of int or DrawnCells, shape (C, s)
         Triangles, segments or points.
     inputs : ShadingInputs
         Points, tangents and normals. A lit surface has normals also where its light does not depend
-        on them: a reader sees them as its shape. Of a large surface the points alone.
+        on them: a reader sees them as its shape. Of a large surface and of many lines the points
+        alone.
     options : ShadingOptions
         How the mesh is lit.
     scene : Scene
@@ -224,9 +225,6 @@ class SeenMesh:
         Width of lines or points in pixels, the least width of lines that have a diameter.
     diameter : float or None
         Diameter of lines in the unit of the mesh.
-    ahead : ndarray, shape (C,), or None
-        1 for segments that run in the sense of the data, -1 against it, 0 without; None where the
-        data have no sense.
     glyph : ndarray of int, shape (C,), or None
         Numbers of the glyphs that cells belong to; None where they are no glyphs.
     by_axes : bool
@@ -235,7 +233,7 @@ class SeenMesh:
 
     kind: Kind
     mesh: pv.DataSet
-    cells: Indices | DrawnTriangles
+    cells: Indices | DrawnCells
     inputs: ShadingInputs
     options: ShadingOptions
     scene: Scene
@@ -247,7 +245,6 @@ class SeenMesh:
     table: pv.LookupTable | None = None
     width: float = 1.0
     diameter: float | None = None
-    ahead: Array | None = None
     glyph: Indices | None = None
     by_axes: bool = False
 
@@ -259,12 +256,38 @@ class SeenMesh:
     @property
     def has_tangents(self) -> bool:
         """Whether the mesh has tangents."""
-        return self.inputs.tangents is not None or self.light.tangents is not None
+        named = self.light.tangents is not None
+        return named or self.inputs.tangents is not None or self._has_own_tangents
+
+    @property
+    def _has_own_tangents(self) -> bool:
+        """Whether the mesh is lines whose tangents are made where they are read."""
+        return self.kind == "line" and self.light.positions is None and self.inputs.tangents is None
 
     @property
     def drawn(self) -> Cells:
         """Points and cells to draw."""
         return Cells(points_of(self.mesh, None), self.cells, self.width, self.diameter)
+
+    def ahead(self, cells: Indices) -> Array:
+        """Return whether segments run with the data, by their vectors or by the time along them.
+
+        1 if they run in the sense of the data, -1 against it, 0 without a sense.
+        """
+        tangents, light = self.inputs.tangents, self.light
+        ids = self.cells[cells]
+        if self.glyph is None and TIME in self.mesh.point_data:
+            time = np.asarray(self.mesh.point_data[TIME])[ids].astype(np.float64)
+            return np.sign(np.diff(time)[:, 0])
+        has_sense = light.tangents is not None and not light.line_field and self.glyph is None
+        if tangents is None or tangents.shape[1] != 3 or not has_sense:
+            return np.zeros(len(ids))
+        start, end = ids.T
+        vectors, points = (
+            [rows_of(rows, each).astype(np.float64) for each in (start, end)]
+            for rows in (tangents, self.inputs.points)
+        )
+        return np.asarray(np.sign(dots(vectors[0] + vectors[1], points[1] - points[0])))
 
     def near(self, cells: Indices) -> SeenMesh:
         """Return the mesh with some of the cells alone, and with all inputs at their points."""
@@ -272,6 +295,8 @@ class SeenMesh:
         if values is not None and self.flat:
             assert isinstance(self.cells, DrawnTriangles)
             values = values[self.cells.cells(cells)]
+        if isinstance(self.cells, DrawnSegments) and self._has_own_tangents:
+            return self._near_lines(self.cells, cells)
         if not (isinstance(self.cells, DrawnTriangles) and is_large(self.mesh)):
             return dataclasses.replace(self, cells=self.cells[cells], values=values)
         around = near(self.mesh, self.cells, cells, self.light)
@@ -281,6 +306,31 @@ class SeenMesh:
         return dataclasses.replace(
             self, mesh=around.mesh, cells=around.corners, inputs=inputs, values=values
         )
+
+    def _near_lines(self, lines: DrawnSegments, cells: Indices) -> SeenMesh:
+        """Return some segments with their points alone, and the tangents at these."""
+
+        def tangents_of(mesh: pv.PolyData) -> Array:
+            tangents = part_of(mesh, self.path, self.scene, self.light).inputs.tangents
+            assert tangents is not None
+            return tangents[:]
+
+        points, corners = np.unique(lines[cells], return_inverse=True)
+        inputs = ShadingInputs(
+            points=rows_of(self.inputs.points, points),
+            tangents=tangents_at(self.mesh, lines, points, tangents_of),
+            line_field=self.light.line_field,
+        )
+        values = None if self.values is None else self.values[points]
+        corners = corners.reshape(-1, lines.shape[1])
+        return dataclasses.replace(self, cells=corners, inputs=inputs, values=values)
+
+
+def _are_long(mesh: pv.DataSet, lines: DrawnSegments, light: LightOptions) -> bool:
+    """Return whether tangents of lines are made near the places that are read."""
+    if mesh.n_points <= WHOLE or lines.may_join or subdivision.kept_tangents(mesh) is not None:
+        return False
+    return light.tangents is None and light.positions is None and not light.conditioned
 
 
 def is_large(mesh: pv.DataSet) -> bool:
@@ -329,14 +379,17 @@ def part_on(
         more["lit"] = False
     # A key has no depth by which a cue could fade it.
     scene = scene.replace(depth_cue=None)
-    drawn = DrawnTriangles.of(mesh)
+    drawn = DrawnTriangles.of(mesh) or DrawnSegments.of(mesh)
     cells = subdivision.simplices(mesh) if drawn is None else drawn
     kind: Kind = "surface" if cells.shape[1] == 3 else "line"
     if not len(cells):
         kind, cells = "point", np.arange(mesh.n_points)[:, np.newaxis]
     # Shares of light that reach a place are the picture's to show, and not of the key.
     light = dataclasses.replace(options, occlusion=None, bundle=False)
-    if kind == "surface" and is_large(mesh):
+    is_near = kind == "surface" and is_large(mesh)
+    if isinstance(cells, DrawnSegments):
+        is_near = _are_long(mesh, cells, light)
+    if is_near:
         inputs = ShadingInputs(points=points_of(mesh, options.positions))
     elif kind == "surface":
         inputs = _inputs(mesh, path, scene, light, lit=more.get("lit", True))
@@ -345,11 +398,9 @@ def part_on(
     inputs = dataclasses.replace(inputs.of_faces(), occlusion=None, transmittance=None, shadow=None)
     # In float64, so that no error of the engine is taken for one of the reader.
     exact = ShadingOptions.of(vars(options) | {"precision": "float64", "components": False})
-    ahead = None if is_glyphs or kind != "line" else _ahead(mesh, cells[:], inputs, options)
     return SeenMesh(
-        kind=kind, mesh=mesh, cells=cells, inputs=inputs, options=exact, scene=scene, ahead=ahead,
-        light=light, path=path,
-        glyph=_glyphs(mesh, cells) if is_glyphs else None, **more,
+        kind=kind, mesh=mesh, cells=cells, inputs=inputs, options=exact, scene=scene, light=light,
+        path=path, glyph=_glyphs(mesh, cells) if is_glyphs else None, **more,
     )  # fmt: skip
 
 
@@ -360,7 +411,7 @@ def of_glyphs(mesh: pv.DataSet, options: LightOptions) -> LightOptions:
     return options
 
 
-def _glyphs(mesh: pv.DataSet, cells: Indices | DrawnTriangles) -> Indices:
+def _glyphs(mesh: pv.DataSet, cells: Indices | DrawnCells) -> Indices:
     """Return the numbers of the glyphs that cells belong to.
 
     VTK writes the points of one glyph after those of another, as many of each. In another mesh,
@@ -373,21 +424,6 @@ def _glyphs(mesh: pv.DataSet, cells: Indices | DrawnTriangles) -> Indices:
     if (number[cells] != number[cells[:, :1]]).any():
         number = np.unique(vectors, axis=0, return_inverse=True)[1].ravel()
     return np.asarray(np.unique(number[cells[:, 0]], return_inverse=True)[1])
-
-
-def _ahead(
-    mesh: pv.DataSet, cells: Indices, inputs: ShadingInputs, options: LightOptions
-) -> Array | None:
-    """Return whether segments run with the data, by their vectors or by the time along them."""
-    if TIME in mesh.point_data:
-        return np.sign(np.diff(np.asarray(mesh.point_data[TIME], np.float64)[cells])[:, 0])
-    if options.tangents is None or inputs.tangents is None or options.line_field:
-        return None
-    if inputs.tangents.shape[1] != 3:
-        return None
-    vectors = np.asarray(inputs.tangents[:], dtype=np.float64)[cells].sum(axis=1)
-    points = np.asarray(inputs.points[:], dtype=np.float64)
-    return np.asarray(np.sign(dots(vectors, points[cells[:, 1]] - points[cells[:, 0]])))
 
 
 def camera_of(

@@ -1,4 +1,4 @@
-"""Triangles of a surface as VTK's renderer draws them, made for some of them and not stored."""
+"""Triangles and segments as VTK's renderer draws them, made for some of them and not stored."""
 
 from __future__ import annotations
 
@@ -32,104 +32,48 @@ if TYPE_CHECKING:
     from vizlight._types import AnyArray, Bools, Dataset, Indices, Rows, Slice
 
 #: Numbers of corners.
-TRIANGLE, QUAD = 3, 4
+SEGMENT, TRIANGLE, QUAD = 2, 3, 4
 #: Number of polygons that are looked at at once.
 BLOCK = 1 << 16
 #: Number of entries of the table of marked points, beyond which some share an entry.
 TABLE = 1 << 20
 
 
-class DrawnTriangles:
-    """Triangles of a surface as VTK's renderer draws it, polygon by polygon.
-
-    It halves all quadrilaterals from their first corner to their third, and not by the shorter
-    diagonal.
+class DrawnCells:
+    """Parts of polygons or of lines, all with as many corners, one after the other.
 
     Parameters
     ----------
-    surface : vtkPolyData
-        Surface; its strips are split into triangles after all polygons.
+    whole : vtkCellArray
+        Polygons or lines.
+    size : int
+        Number of corners of a part.
     """
 
-    def __init__(self, surface: vtkPolyData) -> None:
-        before = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
-        cells: Indices | int = before
-        if surface.GetNumberOfStrips():
-            surface, cells = _without_strips(surface)
-        kept = _are_faces(surface.GetPolys())
-        if not kept.all():
-            kept = np.broadcast_to(kept, surface.GetNumberOfPolys())
-            cells = (cells if isinstance(cells, np.ndarray) else cells + np.arange(len(kept)))[kept]
-            surface = bare_faces(surface, kept)
-        polys = surface.GetPolys()
-        size = max(polys.IsHomogeneous(), 0)
-        self._ids: Indices | _GridCorners = as_numpy(polys.GetConnectivityArray())
-        self._size, self._cells, self._points = size, cells, surface.GetPoints()
-        #: Number of polygons.
-        self.polygons = polys.GetNumberOfCells()
-        self._offsets = np.zeros(0, np.intp) if size else as_numpy(polys.GetOffsetsArray())
-
-    @classmethod
-    def of(cls, mesh: Dataset) -> DrawnTriangles | None:
-        """Return the triangles of a mesh whose faces stand in memory or in rows, else None.
-
-        It is a surface, a grid of plain polygons alone, or one of a single layer of points; what
-        has hidden cells is none of these.
-        """
-        if isinstance(mesh, vtkPolyData):
-            return cls(mesh) if has_faces(mesh) else None
-        if mesh.GetCellData().HasArray(GHOSTS) or mesh.GetPointData().HasArray(GHOSTS):
-            return None
-        sides = [count for count in dimensions(mesh) if count > 1]
-        if len(sides) == 2 and not isinstance(mesh, vtkExplicitStructuredGrid):
-            triangles = cls(vtkPolyData())
-            triangles._ids, triangles._size = _GridCorners(*sides), QUAD
-            triangles.polygons = mesh.GetNumberOfCells()
-            return triangles
-        if not isinstance(mesh, vtkUnstructuredGrid):
-            return None
-        kinds = {*as_numpy(mesh.GetDistinctCellTypesArray()).tolist()}
-        if not kinds or kinds - {VTK_TRIANGLE, VTK_QUAD, VTK_POLYGON}:
-            return None
-        surface = vtkPolyData()
-        surface.SetPoints(mesh.GetPoints())
-        surface.SetPolys(grid_cells(mesh))
-        return cls(surface)
+    def __init__(self, whole: vtkCellArray, size: int) -> None:
+        #: Number of polygons or lines.
+        self.polygons = whole.GetNumberOfCells()
+        self._part, self._size = size, max(whole.IsHomogeneous(), 0)
+        self._ids: Indices | _GridCorners = as_numpy(whole.GetConnectivityArray())
+        self._offsets = np.zeros(0, np.intp) if self._size else as_numpy(whole.GetOffsetsArray())
 
     @property
     def shape(self) -> tuple[int, int]:
         """Shape of an array of the corners."""
-        return len(self._ids) - 2 * self.polygons, TRIANGLE
+        return len(self._ids) - (self._part - 1) * self.polygons, self._part
 
     def __len__(self) -> int:
         return self.shape[0]
 
     def __getitem__(self, rows: Rows, /) -> Indices:
-        """Return the points at the corners of some triangles, shape (M, 3)."""
-        if self._size == TRIANGLE:
-            triangles: Indices = np.reshape(self._ids[:], (-1, TRIANGLE))[rows]
-            return triangles
-        polygon, place = self._places(rows)
-        start, size = self._ends(polygon)
-        fan = [self._ids[start], self._ids[start + place + 1], self._ids[start + place + 2]]
-        corners = np.stack(fan, axis=1)
-        many = size > QUAD
-        if many.any():
-            corners[many] = self._cut(polygon[many], place[many])
-        return corners
-
-    def cells(self, rows: Rows) -> Indices:
-        """Return the cells of the surface that some triangles are of."""
-        return self.cells_of(self._places(rows)[0])
-
-    def cells_of(self, polygon: Indices) -> Indices:
-        """Return the cells of the surface that some polygons are."""
-        if isinstance(self._cells, np.ndarray):
-            return self._cells[polygon]
-        return polygon + self._cells
+        """Return the points at the corners of some parts, shape (M, s)."""
+        if self._size == self._part:
+            parts: Indices = np.reshape(self._ids[:], (-1, self._part))[rows]
+            return parts
+        return self._some(*self._places(rows))
 
     def polygon(self, rows: Rows) -> Indices:
-        """Return the polygons that some triangles are of."""
+        """Return the polygons that some triangles are of, or the lines of some segments."""
         return self._places(rows)[0]
 
     def corners(self, polygon: Indices) -> tuple[Indices, Indices]:
@@ -138,6 +82,10 @@ class DrawnTriangles:
         ends = np.concatenate([[0], np.cumsum(size)])
         return self._ids[np.repeat(start - ends[:-1], size) + np.arange(ends[-1])], ends
 
+    def sizes(self, polygon: Indices) -> Indices:
+        """Return how many corners some polygons or lines have."""
+        return self._ends(polygon)[1]
+
     def around(self, points: Indices) -> Indices:
         """Return the polygons that have a corner among some points."""
         table = np.zeros(TABLE, dtype=np.bool_)
@@ -145,7 +93,9 @@ class DrawnTriangles:
         # A mask of all points would be as long as the mesh.
         known = np.sort(points)
         found = []
-        for block in _pool.blocks(self.polygons, BLOCK):
+        # Lines may have many points: as many corners as BLOCK quadrilaterals.
+        step = max(1, QUAD * BLOCK * self.polygons // max(len(self._ids), 1))
+        for block in _pool.blocks(self.polygons, step):
             polygon = np.flatnonzero(self._any(table, block)) + block.start
             ids, ends = self.corners(polygon)
             at = np.minimum(np.searchsorted(known, ids), len(known) - 1)
@@ -174,16 +124,95 @@ class DrawnTriangles:
         if isinstance(rows, slice):
             number = np.arange(*rows.indices(len(self)))
         if self._size:
-            polygon, place = np.divmod(number, self._size - 2)
+            polygon, place = np.divmod(number, self._size - self._part + 1)
             return polygon, place
-        # Polygons before one have two triangles each less than corners. Bisection takes no table.
+        # Polygons before one have fewer triangles than corners, by two each, and lines have fewer
+        # segments by one. Bisection takes no table.
+        fewer = self._part - 1
         low = np.zeros(len(number), dtype=np.intp)
         high = np.full(len(number), self.polygons)
         for _ in range(self.polygons.bit_length()):
             middle = (low + high) // 2
-            before = self._offsets[middle] - 2 * middle <= number
+            before = self._offsets[middle] - fewer * middle <= number
             low, high = np.where(before, middle, low), np.where(before, high, middle)
-        return low, number - (self._offsets[low] - 2 * low)
+        return low, number - (self._offsets[low] - fewer * low)
+
+    def _some(self, polygon: Indices, place: Indices) -> Indices:
+        """Return the corners of parts by their places in polygons or lines."""
+        start = self._ends(polygon)[0] + place
+        return np.stack([self._ids[start + i] for i in range(self._part)], axis=1)
+
+
+class DrawnTriangles(DrawnCells):
+    """Triangles of a surface as VTK's renderer draws it, polygon by polygon.
+
+    It halves all quadrilaterals from their first corner to their third, and not by the shorter
+    diagonal.
+
+    Parameters
+    ----------
+    surface : vtkPolyData
+        Surface; its strips are split into triangles after all polygons.
+    """
+
+    def __init__(self, surface: vtkPolyData) -> None:
+        before = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
+        cells: Indices | int = before
+        if surface.GetNumberOfStrips():
+            surface, cells = _without_strips(surface)
+        kept = _are_of(surface.GetPolys(), TRIANGLE)
+        if not kept.all():
+            kept = np.broadcast_to(kept, surface.GetNumberOfPolys())
+            cells = (cells if isinstance(cells, np.ndarray) else cells + np.arange(len(kept)))[kept]
+            surface = bare_faces(surface, kept)
+        super().__init__(surface.GetPolys(), TRIANGLE)
+        self._cells, self._points = cells, surface.GetPoints()
+
+    @classmethod
+    def of(cls, mesh: Dataset) -> DrawnTriangles | None:
+        """Return the triangles of a mesh whose faces stand in memory or in rows, else None.
+
+        It is a surface, a grid of plain polygons alone, or one of a single layer of points; what
+        has hidden cells is none of these.
+        """
+        if isinstance(mesh, vtkPolyData):
+            return cls(mesh) if has_faces(mesh) else None
+        if mesh.GetCellData().HasArray(GHOSTS) or mesh.GetPointData().HasArray(GHOSTS):
+            return None
+        sides = [count for count in dimensions(mesh) if count > 1]
+        if len(sides) == 2 and not isinstance(mesh, vtkExplicitStructuredGrid):
+            triangles = cls(vtkPolyData())
+            triangles._ids, triangles._size = _GridCorners(*sides), QUAD
+            triangles.polygons = mesh.GetNumberOfCells()
+            return triangles
+        if not isinstance(mesh, vtkUnstructuredGrid):
+            return None
+        kinds = {*as_numpy(mesh.GetDistinctCellTypesArray()).tolist()}
+        if not kinds or kinds - {VTK_TRIANGLE, VTK_QUAD, VTK_POLYGON}:
+            return None
+        surface = vtkPolyData()
+        surface.SetPoints(mesh.GetPoints())
+        surface.SetPolys(grid_cells(mesh))
+        return cls(surface)
+
+    def cells(self, rows: Rows) -> Indices:
+        """Return the cells of the surface that some triangles are of."""
+        return self.cells_of(self._places(rows)[0])
+
+    def cells_of(self, polygon: Indices) -> Indices:
+        """Return the cells of the surface that some polygons are."""
+        if isinstance(self._cells, np.ndarray):
+            return self._cells[polygon]
+        return polygon + self._cells
+
+    def _some(self, polygon: Indices, place: Indices) -> Indices:
+        start, size = self._ends(polygon)
+        fan = [self._ids[start], self._ids[start + place + 1], self._ids[start + place + 2]]
+        corners = np.stack(fan, axis=1)
+        many = size > QUAD
+        if many.any():
+            corners[many] = self._cut(polygon[many], place[many])
+        return corners
 
     def _cut(self, polygon: Indices, place: Indices) -> Indices:
         """Return some of the triangles into which VTK cuts polygons of many corners."""
@@ -207,6 +236,37 @@ class DrawnTriangles:
         return corners
 
 
+class DrawnSegments(DrawnCells):
+    """Segments of lines.
+
+    Parameters
+    ----------
+    lines : vtkCellArray
+        Lines of two points or more.
+    """
+
+    def __init__(self, lines: vtkCellArray) -> None:
+        super().__init__(lines, SEGMENT)
+
+    @classmethod
+    def of(cls, mesh: Dataset) -> DrawnSegments | None:
+        """Return the segments of a mesh of lines that stand in memory, else None."""
+        if mesh.GetCellData().HasArray(GHOSTS) or mesh.GetPointData().HasArray(GHOSTS):
+            return None
+        if not isinstance(mesh, vtkPolyData) or has_faces(mesh) or not mesh.GetNumberOfLines():
+            return None
+        return cls(mesh.GetLines()) if _are_of(mesh.GetLines(), SEGMENT).all() else None
+
+    @property
+    def may_join(self) -> bool:
+        """Whether some lines are single segments, which may be parts of longer lines."""
+        if self._size:
+            return self._size == SEGMENT
+        blocks = _pool.blocks(self.polygons, BLOCK)
+        sizes = (np.diff(self._offsets[block.start : block.stop + 1]) for block in blocks)
+        return any((each == SEGMENT).any() for each in sizes)
+
+
 class _GridCorners:
     """Points at the corners of the quadrilaterals of a grid, as an array of them without memory."""
 
@@ -226,16 +286,16 @@ class _GridCorners:
         return points
 
 
-def _are_faces(polys: vtkCellArray) -> Bools:
-    """Return which polygons have three corners or more, or one value for all."""
+def _are_of(polys: vtkCellArray, least: int) -> Bools:
+    """Return which cells have some number of corners or more, or one value for all."""
     if (size := polys.IsHomogeneous()) >= 0:
-        return np.array([size == 0 or size >= TRIANGLE])
+        return np.array([size == 0 or size >= least])
     offsets = as_numpy(polys.GetOffsetsArray())
     blocks = _pool.blocks(polys.GetNumberOfCells(), BLOCK)
-    few = (np.diff(offsets[block.start : block.stop + 1]) < TRIANGLE for block in blocks)
+    few = (np.diff(offsets[block.start : block.stop + 1]) < least for block in blocks)
     if not any(each.any() for each in few):
         return np.array([True])
-    return np.asarray(np.diff(offsets) >= TRIANGLE)
+    return np.asarray(np.diff(offsets) >= least)
 
 
 def _without_strips(surface: vtkPolyData) -> tuple[vtkPolyData, Indices]:
