@@ -373,7 +373,7 @@ def _size(path: Path) -> int:
 
 
 def _is_file(path: Path) -> bool:
-    """Return whether a path is a file, also one whose name the system does not take."""
+    """Return whether a path is a file, also one with a name that the system does not take."""
     with contextlib.suppress(OSError, ValueError):
         return path.is_file()
     return False

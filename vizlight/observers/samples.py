@@ -261,7 +261,7 @@ class SeenMesh:
 
     @property
     def _has_own_tangents(self) -> bool:
-        """Whether the mesh is lines whose tangents are made where they are read."""
+        """Whether the mesh is lines with tangents that are made where they are read."""
         return self.kind == "line" and self.light.positions is None and self.inputs.tangents is None
 
     @property

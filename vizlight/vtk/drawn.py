@@ -170,7 +170,7 @@ class DrawnTriangles(DrawnCells):
 
     @classmethod
     def of(cls, mesh: Dataset) -> DrawnTriangles | None:
-        """Return the triangles of a mesh whose faces stand in memory or in rows, else None.
+        """Return the triangles of a mesh with faces in memory or in rows, else None.
 
         It is a surface, a grid of plain polygons alone, or one of a single layer of points; what
         has hidden cells is none of these.
