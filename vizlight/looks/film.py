@@ -182,10 +182,11 @@ class _Flow:
         """Return the strokes of a look, None where it has none that can be carried."""
         for layer in look.drawing.layers:
             if "width" in layer.keywords and fields.have_sense(layer.mesh):
-                source: Foreign = layer.mesh.arguments[0]
+                whole = replace(layer, mesh=fields.laid(layer.mesh))
+                source: Foreign = whole.mesh.arguments[0]
                 mesh = source.run()
                 volume = mesh.GetMaxSpatialDimension() == 3
-                return cls(look, layer, mesh) if volume or look.drawing.is_flat else None
+                return cls(look, whole, mesh) if volume or look.drawing.is_flat else None
         return None
 
     @property
@@ -237,7 +238,8 @@ class _Flow:
         move = min(lasts / count, drift.duration / PER_LENGTH)
         ratio = move * count / lasts
         pace = "with it" if ratio > AT_PACE else f"at {ratio:.2g} of its pace"
-        rest = [layer for layer in self.look.drawing.layers if layer is not self.layer]
+        at_rest, every = self.layer.mesh, self.look.drawing.layers
+        rest = [layer for layer in every if fields.laid(layer.mesh) is not at_rest]
         ground = replace(fields.with_words(self.look.drawing, f"strokes move {pace}"), layers=rest)
         speed = self.layer.keywords.get("scalars")
 

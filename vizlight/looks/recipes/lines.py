@@ -83,7 +83,8 @@ def lines(case: Case) -> Drawing:
         shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
         layer = Layer(_by_direction(lit), {**shown, "line_width": width})
         table = Step("", "vizlight.maps.directions", meaning.ways(mesh.run()))
-        key: Keywords = {"question": "value", "title": "direction", "cmap": table}
+        title = ", ".join(filter(None, [file_named(mesh), "direction"]))
+        key: Keywords = {"question": "value", "title": title, "cmap": table}
         words = "lines by their direction"
         return Drawing([layer], camera, scene, lit, words, [key], kind=mesh)
     if case.question == "value":
@@ -155,8 +156,11 @@ def backbone(case: Case) -> Drawing:
     across = eye_across(solid.run())
     chains = replace(case, data=solid, contents=Contents(solid.run()), wishes=wishes)
     drawing = surfaces.values(replace(chains, viewpoint=across))
-    named = f"{file_named(case.data)}, ".removeprefix(", ")
-    keys = [key | {"title": f"{named}{key['title']}"} | bar for key in drawing.keys]
+    named = file_named(case.data)
+    keys = [
+        key | {"title": ", ".join(filter(None, [named, str(key["title"])]))} | bar
+        for key in drawing.keys
+    ]
     return replace(drawing, words=f"backbone in the colours of {name}", keys=keys)
 
 
