@@ -71,7 +71,7 @@ def test_a_slow_field_is_arrows_along_it_over_its_speed():
 def test_strokes_are_nearer_where_the_field_turns_faster():
     spacings = []
     for turn in (0.05, 0.5):
-        strokes = fields.laid(vizlight.look(sheet(turn, 120)).drawing.layers[1].mesh)
+        strokes = vizlight.look(sheet(turn, 120)).drawing.layers[1].mesh
         spacings.append(strokes.keywords["spacing"])
     assert spacings[0] == pytest.approx(sheet(0, 120).length / 40, rel=0.01)
     assert spacings[1] < 0.8 * spacings[0]
@@ -172,14 +172,19 @@ def test_an_image_with_vectors_in_a_small_part_is_drawn_around_that_part():
 def test_strokes_along_the_border_are_left_out():
     grid = sheet(0.0)
     grid["wind"][:, 0] += np.asarray(grid.points)[:, 0] / 30
-    inner = vizlight.look(grid, size=(300, 200)).drawing.layers[-1].mesh
-    whole, spacing = fields.laid(inner), fields.laid(inner).keywords["spacing"]
-    assert fields.have_sense(inner)
-    for strokes, is_inner in ((whole, False), (inner, True)):
+    step = vizlight.look(grid, size=(300, 200)).drawing.layers[-1].mesh
+    assert fields.have_sense(step)
+    mesh, scene = (argument.run() for argument in step.arguments)
+    whole = {name: value for name, value in step.keywords.items() if name != "stroke_length"}
+    for lines, is_inner in (
+        (vizlight.streamlines(mesh, scene, **whole), False),
+        (step.run(), True),
+    ):
         beside = []
-        for line in strokes.run().cell:
+        for line in lines.cell:
             y = np.asarray(line.points)[:, 1]
-            beside.append(np.median(np.minimum(y, grid.bounds[3] - y)) < 0.29 * spacing)
+            near = np.median(np.minimum(y, grid.bounds[3] - y))
+            beside.append(near < 0.29 * step.keywords["spacing"])
         assert any(beside) != is_inner
 
 

@@ -47,6 +47,16 @@ def test_slow_lines_that_turn_on_the_spot_are_left_out_as_noise():
     assert strokes.without_short(both, 1.1 * np.pi, 4 * speed + 0.1).n_lines == 2
 
 
+def test_lines_along_a_border_are_left_out_unless_all_run_along_it():
+    border = np.column_stack([np.linspace(0, 9, 90), np.full(90, 0.1), np.zeros(90)])
+    kept = strokes.inside(lines(), border, 0.5)
+    assert kept.n_lines == len(LENGTHS) - 1
+    assert 0.0 not in kept.points[:, 1]
+    assert strokes.inside(lines(), border, 0.05).n_lines == len(LENGTHS)
+    assert strokes.inside(lines(), border, 9.0).n_lines == len(LENGTHS)
+    assert strokes.inside(lines(), border[:0], 9.0).n_lines == len(LENGTHS)
+
+
 @pytest.mark.parametrize("arrow", [strokes.FLAT, strokes.TUBE, None])
 def test_strokes_are_equally_long_and_thin_where_they_come_from(arrow):
     cut = strokes.cut(lines(), 1.0, "t", arrow)

@@ -182,11 +182,10 @@ class _Flow:
         """Return the strokes of a look, None where it has none that can be carried."""
         for layer in look.drawing.layers:
             if "width" in layer.keywords and fields.have_sense(layer.mesh):
-                whole = replace(layer, mesh=fields.laid(layer.mesh))
-                source: Foreign = whole.mesh.arguments[0]
+                source: Foreign = layer.mesh.arguments[0]
                 mesh = source.run()
                 volume = mesh.GetMaxSpatialDimension() == 3
-                return cls(look, whole, mesh) if volume or look.drawing.is_flat else None
+                return cls(look, layer, mesh) if volume or look.drawing.is_flat else None
         return None
 
     @property
@@ -239,7 +238,7 @@ class _Flow:
         ratio = move * count / lasts
         pace = "with it" if ratio > AT_PACE else f"at {ratio:.2g} of its pace"
         at_rest, every = self.layer.mesh, self.look.drawing.layers
-        rest = [layer for layer in every if fields.laid(layer.mesh) is not at_rest]
+        rest = [layer for layer in every if layer.mesh is not at_rest]
         ground = replace(fields.with_words(self.look.drawing, f"strokes move {pace}"), layers=rest)
         speed = self.layer.keywords.get("scalars")
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
+import scipy
 
 from vizlight.model import kernels
 from vizlight.vtk import polylines
@@ -21,6 +22,8 @@ ENDS = 0.3
 #: Largest length of a head as a share of that of a short stroke, and the way in lengths of a head
 #: on which the width rises at its base.
 MOST_HEAD, BASE = 0.4, 0.05
+#: Distance from a border below which strokes run along it, in distances between lines.
+RIM = 0.3
 #: Steps from point to point in a head that moves.
 STEPS = 4
 #: Share of the distance from one moving stroke to the next that is bare, and share of it in which
@@ -164,6 +167,31 @@ def without_short(mesh: pv.PolyData, least: float, speed: Array | None = None) -
         means = np.bincount(segments.lines, speed[segments.starts]) / counts
         turns = _turns(mesh, segments)
         kept &= (means >= SLOW * speed.max()) | (turns * least <= math.pi * totals)
+    return _rebuilt(mesh, segments, kept[segments.lines], segments.lines)
+
+
+def inside(mesh: pv.PolyData, border: Array, least: float) -> pv.PolyData:
+    """Return the lines of a mesh without those that run along a border, if others are left.
+
+    Parameters
+    ----------
+    mesh : pyvista.PolyData
+        Lines.
+    border : ndarray, shape (N, 3)
+        Points of the border.
+    least : float
+        Distance from the border to the middle of the points of a line, at least.
+    """
+    segments = segments_of(mesh)
+    if not len(border) or not len(segments.lines):
+        return mesh
+    distances = scipy.spatial.cKDTree(border).query(mesh.points, distance_upper_bound=least)[0]
+    near: Array = (np.asarray(distances) < least).astype(np.float64)
+    kept: Bools = (
+        np.bincount(segments.lines, near[segments.starts]) <= np.bincount(segments.lines) / 2
+    )
+    if kept.all() or not kept.any():
+        return mesh
     return _rebuilt(mesh, segments, kept[segments.lines], segments.lines)
 
 

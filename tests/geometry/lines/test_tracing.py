@@ -66,6 +66,13 @@ def test_a_walk_around_a_box_comes_back():
     np.testing.assert_allclose(mesh.positions(end), mesh.positions(start), atol=1e-12)
 
 
+def test_a_border_is_where_no_cell_is_beyond():
+    border = square(3).border
+    assert len(border) == 12
+    np.testing.assert_array_equal(np.abs(border).max(axis=1), 0.5)
+    assert len(box().border) == 0
+
+
 def test_cells_without_extent_and_sides_of_three_cells_end_a_walk():
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [2, 0, 0]], float)
     fan = Simplices(points, np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4], [0, 1, 5]]))

@@ -213,6 +213,14 @@ class Simplices:
         return neighbours
 
     @cached_property
+    def border(self) -> Array:
+        """Positions of the vertices of sides without a cell beyond, shape (N, 3)."""
+        sides = (self.neighbours < 0) & self.good[:, np.newaxis]
+        # A vertex is on each side but the one opposite to it.
+        is_on = sides.sum(axis=1, keepdims=True) > sides
+        return np.asarray(self.points[np.unique(self.cells[is_on])])
+
+    @cached_property
     def _sizes(self) -> Array:
         """Mean extent of the cells at each vertex of each cell, shape (M, k + 1)."""
         numbers = self.merged.ravel()

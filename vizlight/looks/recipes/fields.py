@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
-import scipy
 
 from vizlight.draw.cameras import footprint
 from vizlight.draw.margins import parted
@@ -33,7 +32,6 @@ from vizlight.looks.wishes import even_light
 from vizlight.mesh import records
 from vizlight.mesh.strokes import FLAT, TUBE
 from vizlight.model import kernels
-from vizlight.vtk.cells import connectivity
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -58,9 +56,6 @@ STEP, FINEST = 0.125, 0.3
 #: widths of lines: on maps, where wider ones darken what is beside them for the eye, on surfaces
 #: that bend, where thinner ones tell as much, and in volumes.
 HEAD_WIDTH, WIDTHS, WIDTHS_ON_SURFACE, WIDTHS_IN_VOLUME = 0.55, (3.0, 3.8), (2.2, 2.6), (4.0, 8.0)
-#: Distance from the border below which strokes run along it, in distances between strokes, and the
-#: method that leaves them out.
-RIM, LEFT_OUT = 0.3, ".remove_cells"
 #: Length below which lines on surfaces are left out, in distances between strokes: loops so small
 #: are blots.
 SHORTEST_ON_SURFACE = 2.0
@@ -215,32 +210,9 @@ def _inked(case: Case, strokes: Step, camera: Step) -> Layer:
     flat = case.contents.flat_axis is not None
     wide = _head_width(case, strokes, camera, WIDTHS if flat else WIDTHS_ON_SURFACE)
     return Layer(
-        _off_the_rim(strokes),
+        strokes,
         {"scene": scene, "color": "black", "width": "width", "line_width": wide, "halo": False},
     )
-
-
-def _off_the_rim(strokes: Step) -> Step:
-    """Return the step of strokes without those that run along a border."""
-    mesh: Foreign = strokes.arguments[0]
-    spacing: Foreign = strokes.keywords["spacing"]
-    no_others = dict.fromkeys(("feature_edges", "manifold_edges", "non_manifold_edges"), False)
-    rim, lines = mesh.run().extract_feature_edges(**no_others), strokes.run()
-    if not rim.n_points:
-        return strokes
-    ids, ends = connectivity(lines.GetLines())
-    near: Bools = scipy.spatial.cKDTree(rim.points).query(lines.points)[0] < RIM * spacing
-    along = np.add.reduceat(near[ids], ends[:-1], dtype=np.intp) > np.diff(ends) / 2
-    if not along.any() or along.all():
-        return strokes
-    return Step("inner", LEFT_OUT, strokes, np.flatnonzero(along).tolist())
-
-
-def laid(strokes: Step) -> Step:
-    """Return the step that lays strokes, of one that leaves some of them out."""
-    whole = strokes.arguments[0] if strokes.path == LEFT_OUT else strokes
-    assert isinstance(whole, Step)
-    return whole
 
 
 def _head_width(case: Case, strokes: Step, camera: Step, between: tuple[float, float]) -> float:
@@ -375,7 +347,7 @@ def _along_surface(case: Case) -> Drawing | None:
     drawing = vectors(
         replace(case, question="direction", wishes=replace(case.wishes, question="auto"))
     )
-    strokes = laid(drawing.layers[-1].mesh)
+    strokes = drawing.layers[-1].mesh
     if strokes.path != "vizlight.streamlines":
         return None
     # Files of lines have their light.
@@ -393,7 +365,6 @@ def moving(drawing: Drawing) -> Drawing | None:
     for layer in drawing.layers:
         step = layer.mesh
         if "width" in layer.keywords and have_sense(step):
-            step = laid(step)
             step = Step(step.name, step.path, *step.arguments, **step.keywords, travel=TRAVEL)
             step.quiet = layer.mesh.quiet
             period = float(step.run().field_data["period"][0])
@@ -420,7 +391,6 @@ def _title_without_sense(drawing: Drawing) -> str:
 
 def have_sense(strokes: Step) -> bool:
     """Return whether a step lays strokes along vectors, which are not a line field."""
-    strokes = laid(strokes)
     if "stroke_length" not in strokes.keywords or strokes.keywords.get("line_field"):
         return False
     arrays = strokes.run().point_data
