@@ -98,6 +98,14 @@ def test_words_of_a_bar_that_do_not_fit_are_left_out_evenly():
     assert [i for i, shown in enumerate(kept) if shown] == [1, 3, 5, 7, 9]
 
 
+def test_decimals_that_are_0_in_all_words_of_a_bar_are_left_out():
+    bar = presets.key(vizlight.Scene(), cmap="Reds", clim=(0, 2), levels=[0, 0.5, 1, 1.5, 2])
+    key = margins.MarginKey(bar, 0.15, (0, 0, 0), lying=True)
+    for width, words in ((300, "0.0 0.5 1.0 1.5 2.0"), (60, "0 1 2")):
+        key.lay((0, width), 50, 12)
+        assert " ".join(filter(None, (label.GetInput() for label in key._labels))) == words
+
+
 @pytest.mark.parametrize("size", [(300, 200), (900, 600)])
 def test_the_title_is_above_a_map_and_its_bar_as_tall(size):
     plotter = pv.Plotter(off_screen=True, window_size=size)

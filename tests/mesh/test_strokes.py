@@ -48,12 +48,15 @@ def test_slow_lines_that_turn_on_the_spot_are_left_out_as_noise():
 
 
 def test_lines_along_a_border_are_left_out_unless_all_run_along_it():
-    border = np.column_stack([np.linspace(0, 9, 90), np.full(90, 0.1), np.zeros(90)])
-    kept = strokes.inside(lines(), border, 0.5)
+    border = np.array([[(0, 0.1, 0), (2, 0.1, 0)], [(2, 0.1, 0), (9, 0.1, 0)]])
+    kept = strokes.inside(lines(), border, 1.0)
     assert kept.n_lines == len(LENGTHS) - 1
     assert 0.0 not in kept.points[:, 1]
-    assert strokes.inside(lines(), border, 0.05).n_lines == len(LENGTHS)
-    assert strokes.inside(lines(), border, 9.0).n_lines == len(LENGTHS)
+    half = strokes.inside(lines(), border[:1], 1.0)
+    assert half.n_lines == len(LENGTHS)
+    assert half.points[half.points[:, 1] == 0, 0].min() == pytest.approx(2, abs=0.3)
+    assert strokes.inside(lines(), border, 0.2).n_lines == len(LENGTHS)
+    assert strokes.inside(lines(), border, 30.0).n_lines == len(LENGTHS)
     assert strokes.inside(lines(), border[:0], 9.0).n_lines == len(LENGTHS)
 
 

@@ -398,11 +398,10 @@ class MarginKey:
         flat = self._flat[:, [1, 0, 2]] * (bar / np.ptp(self._flat[:, 1]), tall / 2, 0)
         self._move(flat + np.array([left + bar / 2, low + tall / 2, 0]))
         most = tall / (APART * letters) + 1
-        shown = _thinned([share for share, _ in self._marks], self._zero, most)
-        for label, (share, word), visible in zip(self._labels, self._marks, shown, strict=True):
+        self._write(most)
+        for label, (share, _) in zip(self._labels, self._marks, strict=True):
             label.GetTextProperty().SetJustificationToLeft()
             label.GetTextProperty().SetVerticalJustificationToCentered()
-            label.SetInput(word if visible else "")
             label.SetPosition(left + bar + 0.4 * letters, low + share * tall)
         self._heading.GetTextProperty().SetJustificationToLeft()
         self._heading.SetPosition(left, y + box[1] / 2 - words)
@@ -428,13 +427,20 @@ class MarginKey:
         flat = self._flat * ((right - left) / 2, high / np.ptp(self._flat[:, 1]), 0)
         self._move(flat + np.array([(left + right) / 2, upper - high / 2, 0]))
         most = (right - left) / (self.widest(letters) + letters) + 1
-        shown = _thinned([share for share, _ in self._marks], self._zero, most)
-        for label, (share, word), visible in zip(self._labels, self._marks, shown, strict=True):
+        self._write(most)
+        for label, (share, _) in zip(self._labels, self._marks, strict=True):
             label.GetTextProperty().SetFontSize(max(round(letters), 8))
             label.GetTextProperty().SetJustificationToCentered()
             label.GetTextProperty().SetVerticalJustificationToTop()
-            label.SetInput(word if visible else "")
             label.SetPosition(left + share * (right - left), upper - high - 0.3 * letters)
+
+    def _write(self, most: float) -> None:
+        """Write those words along a bar that fit, without a decimal that is 0 in all of them."""
+        shown = _thinned([share for share, _ in self._marks], self._zero, most)
+        words = [word for (_, word), visible in zip(self._marks, shown, strict=True) if visible]
+        end = ".0" if all(word.endswith(".0") for word in words) else ""
+        for label, (_, word), visible in zip(self._labels, self._marks, shown, strict=True):
+            label.SetInput(word.removesuffix(end) if visible else "")
 
     def _move(self, places: Array) -> None:
         moved = vtkPoints()

@@ -191,8 +191,8 @@ def streamlines(
         at its base to 0 at its tip, before it a thin shaft, so that a stroke is an arrow; a head
         is shorter in a volume than on a surface. In a line field both ends are thin.
         ``plotter.vizlight.add_mesh(lines, width="width")`` takes this array; its ``line_width`` is
-        the width of the heads. Evenly spaced lines that run along the border of a surface, most of
-        whose points are within 0.3 spacings of it, are left out. Default: lines are whole.
+        the width of the heads. Parts of evenly spaced lines that run along the border of a surface,
+        within 0.3 spacings of it, are left out. Default: lines are whole.
     travel : float, optional
         Number of stroke lengths by which strokes move along the lines in a movie, where the vectors
         are as long as their 90th percentile; elsewhere by as much as the vectors say. The lines are
@@ -527,7 +527,7 @@ def _lines(
     curves, facts = tracer.even(located, how, spacing, report)
     lines = tracer.lines(curves, unsigned)
     if options.confined and options.stroke_length is not None:
-        lines = strokes.inside(lines, tracer.cells.border, strokes.RIM * spacing)
+        lines = strokes.inside(lines, tracer.cells.border, spacing)
     for key, value in facts.items():
         lines.field_data[key] = [value]
     return lines

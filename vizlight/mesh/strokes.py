@@ -170,29 +170,41 @@ def without_short(mesh: pv.PolyData, least: float, speed: Array | None = None) -
     return _rebuilt(mesh, segments, kept[segments.lines], segments.lines)
 
 
-def inside(mesh: pv.PolyData, border: Array, least: float) -> pv.PolyData:
-    """Return the lines of a mesh without those that run along a border, if others are left.
+def inside(mesh: pv.PolyData, border: Array, spacing: float) -> pv.PolyData:
+    """Return the lines of a mesh without their parts along a border, if others are left.
 
     Parameters
     ----------
     mesh : pyvista.PolyData
         Lines.
-    border : ndarray, shape (N, 3)
-        Points of the border.
-    least : float
-        Distance from the border to the middle of the points of a line, at least.
+    border : ndarray, shape (N, 2, 3)
+        Ends of the sides of a surface at its border.
+    spacing : float
+        Distance between lines: a part runs along the border if it is longer, and nearer to it than
+        0.3 of that.
     """
-    segments = segments_of(mesh)
+    segments, least = segments_of(mesh), RIM * spacing
     if not len(border) or not len(segments.lines):
         return mesh
-    distances = scipy.spatial.cKDTree(border).query(mesh.points, distance_upper_bound=least)[0]
-    near: Array = (np.asarray(distances) < least).astype(np.float64)
-    kept: Bools = (
-        np.bincount(segments.lines, near[segments.starts]) <= np.bincount(segments.lines) / 2
-    )
+    first, ways = border[:, 0], border[:, 1] - border[:, 0]
+    # Points on the border that are near enough to stand for it.
+    counts = np.ceil(2 * kernels.length_rows(ways) / least).astype(np.intp) + 1
+    side = np.repeat(np.arange(len(border)), counts)
+    rank = np.arange(len(side)) - np.repeat(np.cumsum(counts) - counts, counts)
+    points = first[side] + (rank / counts[side])[:, np.newaxis] * ways[side]
+    distances = scipy.spatial.cKDTree(points).query(mesh.points, distance_upper_bound=least)[0]
+    near = np.asarray(distances < least)
+    near = near[segments.starts] & near[segments.ends]
+    parts = _numbered(segments.lines, near)
+    kept: Bools = ~near | (np.bincount(parts, segments.lengths) <= spacing)[parts]
     if kept.all() or not kept.any():
         return mesh
-    return _rebuilt(mesh, segments, kept[segments.lines], segments.lines)
+    return _rebuilt(mesh, segments, kept, _numbered(segments.lines, kept))
+
+
+def _numbered(lines: Indices, mark: Bools) -> Indices:
+    """Return numbers of the parts of lines whose segments have one mark."""
+    return np.cumsum(np.any(np.diff([lines, mark], prepend=-1), axis=0))
 
 
 def _turns(mesh: pv.PolyData, segments: LineSegments) -> Array:

@@ -69,7 +69,8 @@ def test_a_walk_around_a_box_comes_back():
 def test_a_border_is_where_no_cell_is_beyond():
     border = square(3).border
     assert len(border) == 12
-    np.testing.assert_array_equal(np.abs(border).max(axis=1), 0.5)
+    np.testing.assert_array_equal(np.abs(border).max(axis=2), 0.5)
+    assert np.linalg.norm(np.diff(border, axis=1), axis=2).sum() == pytest.approx(4)
     assert len(box().border) == 0
 
 

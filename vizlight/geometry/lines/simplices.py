@@ -214,11 +214,10 @@ class Simplices:
 
     @cached_property
     def border(self) -> Array:
-        """Positions of the vertices of sides without a cell beyond, shape (N, 3)."""
-        sides = (self.neighbours < 0) & self.good[:, np.newaxis]
-        # A vertex is on each side but the one opposite to it.
-        is_on = sides.sum(axis=1, keepdims=True) > sides
-        return np.asarray(self.points[np.unique(self.cells[is_on])])
+        """Ends of the sides of triangles without a cell beyond, shape (N, 2, 3)."""
+        cell, opposite = np.nonzero((self.neighbours < 0) & self.good[:, np.newaxis])
+        ends = [self.cells[cell, (opposite + i) % 3] for i in (1, 2)]
+        return np.asarray(self.points[np.stack(ends, axis=1)])
 
     @cached_property
     def _sizes(self) -> Array:
