@@ -288,8 +288,7 @@ def _read(
         except series.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
-            kind = "" if isinstance(error, FileError) else f"{type(error).__name__}: "
-            reason = f"{kind}{messages.first_line(error)}"
+            reason = messages.reason(error)
             meshes = []
         except SystemExit as error:  # so ends meshio where it finds a fault
             reason = f"its reader ended with {error.code}"
@@ -579,7 +578,7 @@ def _unpacked(path: Path, read: Callable[[Path], list[pv.DataSet]]) -> list[pv.D
                     if file.tell() > MOST_UNPACKED:
                         raise _damaged(path, f"more than {MOST_UNPACKED} bytes are in it")
         except (OSError, EOFError, lzma.LZMAError, zlib.error) as error:
-            raise _damaged(path, messages.first_line(error)) from error
+            raise _damaged(path, messages.reason(error)) from error
         try:
             with _check.held(str(inner), str(path)):
                 return read(inner)

@@ -92,7 +92,7 @@ def test_a_tractogram_is_lit_and_kept(tmp_path):
 
 @pytest.mark.parametrize("name", ["empty.trk", "empty.tck", "no_header_end.tck"])
 def test_a_tractogram_without_lines_or_header(name):
-    with pytest.raises(files.FileError, match=rf"got '.*{name}' \((no points|HeaderError: Miss)"):
+    with pytest.raises(files.FileError, match=rf"got '.*{name}' \((no points|Miss)"):
         vizlight.read(tract(name))
 
 
@@ -217,7 +217,7 @@ def test_a_file_that_a_reader_of_meshio_refuses(tmp_path, capsys):
     pytest.importorskip("meshio")
     path = tmp_path / "a.wkt"
     path.write_text("POINT (1 2)")
-    with pytest.raises(files.FileError, match=r"a\.wkt.*ReadError: Invalid WKT"):
+    with pytest.raises(files.FileError, match=r"a\.wkt' \(Invalid WKT"):
         vizlight.read(path)
     assert capsys.readouterr().out == ""
 
