@@ -27,6 +27,7 @@ from vizlight.mesh import (
     brains,
     cf_grids,
     ensight,
+    file_parts,
     fills,
     foreign_files,
     georeference,
@@ -55,7 +56,7 @@ from vizlight.mesh.molecules import atoms_in, backbone
 from vizlight.mesh.montages import side_by_side
 from vizlight.mesh.subdivision import simplices
 from vizlight.vtk import messages
-from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
+from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions, used
 from vizlight.vtk.topology import place_numbers
 
 try:
@@ -463,6 +464,8 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
             del data[key]
         if odd and (mesh.GetMaxSpatialDimension() or not of_points):
             _check.warn(f"file: arrays without a row for each {what} are left out: {odd}")
+    if path.suffix.lower() == ".stl":
+        file_parts.warn_of_less(path, mesh.n_cells, short_files.triangles(path), "triangles")
     for cells in cell_arrays(mesh):
         ids, ends = connectivity(cells)
         if len(ends) and ((ends[0], ends[-1]) != (0, len(ids)) or np.any(ends[1:] < ends[:-1])):
@@ -492,7 +495,12 @@ def _whole(
     # These formats may have points for each face or colour; an overlay has a row for each point,
     # and keeps them apart.
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
-        mesh = normals.welded(blocks.surface(mesh, "file"))
+        surface = blocks.surface(mesh, "file")
+        mesh = normals.welded(surface)
+        # VTK's reader of STL, which has no points of its own, keeps those of faces without area.
+        is_soup = suffix == ".stl" or mesh is surface
+        if not is_soup and (alone := np.count_nonzero(~used(surface))):
+            notes.append(f"{alone} of its {surface.n_points} points are in no face and left out")
     elif suffix in PIECES:
         # Pieces have cells of their neighbours, and points of their own along the seams.
         mesh = normals.welded(joining.without_ghosts(mesh))

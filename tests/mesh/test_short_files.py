@@ -213,6 +213,15 @@ def test_normals_that_no_face_names(tmp_path):
         assert vizlight.read(tmp_path / "a.obj").n_cells == 1
 
 
+@pytest.mark.parametrize("binary", [False, True])
+def test_triangles_of_stl_without_area(binary, tmp_path):
+    mesh = pv.Sphere(theta_resolution=6, phi_resolution=6)
+    mesh.points[-1] = mesh.points[-2]
+    mesh.save(tmp_path / "a.stl", binary=binary)
+    with pytest.warns(UserWarning, match="gives 46 of the 48 triangles that it states"):
+        assert vizlight.read(tmp_path / "a.stl").n_cells == 46
+
+
 @pytest.mark.filterwarnings("default:.*first axis")
 def test_an_axis_that_vtk_takes_for_components(tmp_path):
     """The number of rows is 9 at most, whatever the header says of its kind."""

@@ -440,7 +440,8 @@ def _tracts(path: Path) -> pv.PolyData:
 
     # nibabel applies the affine of the header: points are in RAS+ and in mm, not in voxels.
     with np.errstate(all="ignore"), warnings.catch_warnings(record=True) as said:
-        tracts: Foreign = nibabel.streamlines.load(path).tractogram
+        file: Foreign = nibabel.streamlines.load(path)
+    tracts = file.tractogram
     lines = tracts.streamlines
     if len(lines) and not np.isfinite(lines.get_data()).any():
         raise ValueError("no point is finite, by the affine of its header")
@@ -452,6 +453,14 @@ def _tracts(path: Path) -> pv.PolyData:
         if len(lines) < header["nb_streamlines"]:
             reason = f"{len(lines)} of {header['nb_streamlines']} streamlines are there"
             raise ValueError(reason)
+        # A number of 4 bytes for each line, place, scalar of a point and property of a line.
+        of_point = 3 + int(header["nb_scalars_per_point"])
+        of_line = 1 + int(header["nb_properties_per_streamline"])
+        numbers = of_line * len(lines) + of_point * len(lines.get_data())
+        size = path.stat().st_size - int(header["hdr_size"]) - 4 * numbers
+        file_parts.warn_of_more(path, size, "bytes")
+    else:
+        file_parts.warn_of_less(path, len(lines), int(file.header.get("count", 0)), "streamlines")
     return _polylines(
         lines.get_data(),
         lines._offsets,

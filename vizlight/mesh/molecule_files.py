@@ -110,9 +110,12 @@ def of_mol2(path: Path) -> pv.PolyData:
         head.strip(): [line.split() for line in body.splitlines() if line.strip()]
         for head, _, body in (part.partition("\n") for part in first.split("@<TRIPOS>")[1:])
     }
-    atoms = rows.get("ATOM", [])
+    atoms, bonds = rows.get("ATOM", []), rows.get("BOND", [])
+    # The counts stand below the name of the molecule.
+    lines = [line for line in first.splitlines() if not line.startswith("#")]
+    _check_counts(lines[2:3], atoms, bonds)
     elements = [" ".join(row[5:6]).partition(".")[0] for row in atoms]
-    pairs = _pairs([row[0] for row in atoms], [row[1:3] for row in rows.get("BOND", [])])
+    pairs = _pairs([row[0] for row in atoms], [row[1:3] for row in bonds])
     mesh = molecules.joined(elements, _numbers([row[2:5] for row in atoms]), pairs)
     if all(len(row) > 8 for row in atoms):
         mesh.point_data["charge"] = _numbers([row[8:9] for row in atoms])[:, 0]
@@ -142,6 +145,7 @@ def of_mol(path: Path) -> pv.PolyData:
             [line.split() for line in "".join(re.findall(part, text)[:1]).splitlines() if line]
             for part in parts.values()
         )
+        _check_counts(re.findall(r"(?m)^COUNTS (.*)", text)[:1], atoms, bonds)
         elements, places = [row[1] for row in atoms], [row[2:5] for row in atoms]
         pairs = _pairs([row[0] for row in atoms], [row[2:4] for row in bonds])
     else:
@@ -168,6 +172,14 @@ def _count(word: str) -> int:
     if not word.strip().isdigit():
         raise ValueError(f"no number of atoms or bonds in {word[:40]!r}")
     return int(word)
+
+
+def _check_counts(lines: Sequence[str], *parts: Sequence[object]) -> None:
+    """Compare the atoms and the bonds with the numbers at the begin of a line, if there is one."""
+    stated = " ".join(lines).split()
+    for what, rows, count in zip(("atoms", "bonds"), parts, stated, strict=False):
+        if _count(count) != len(rows):
+            raise ValueError(f"{len(rows)} of {count} {what} are there")
 
 
 def _numbers(rows: Sequence[Sequence[str]]) -> Array:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 
-__all__ = ["missing_part"]
+__all__ = ["missing_part", "triangles"]
 
 #: Bytes in which a header stands that has no end of its own.
 _HEAD = 4096
@@ -148,12 +148,31 @@ def _stl(file: BinaryIO) -> str:
     head = file.read(_STL_HEAD)
     if len(head) < _STL_HEAD:
         return ""  # VTK's reader says so
-    # Binary files may begin with this word, too, but a text has no bytes of 0.
-    if head.lstrip()[:5].lower() == b"solid" and b"\0" not in head:
+    if _is_text_of_stl(head):
         return "" if b"endsolid" in file_parts.last(file).lower() else "its end is missing"
-    return file_parts.missing_bytes(
-        file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0]
-    )
+    return file_parts.missing_bytes(file, _STL_HEAD + _STL_TRIANGLE * _stl_count(head))
+
+
+def _is_text_of_stl(head: bytes) -> bool:
+    """Return whether a file is text; binary ones may begin with this word, but have bytes of 0."""
+    return head.lstrip()[:5].lower() == b"solid" and b"\0" not in head
+
+
+def _stl_count(head: bytes) -> int:
+    return int.from_bytes(head[_STL_HEAD - 4 : _STL_HEAD], "little")
+
+
+def triangles(path: Path, /) -> int:
+    """Return the number of triangles of an STL file, of which VTK leaves out those without area.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    """
+    with path.open("rb") as file:
+        head = file.read(_STL_HEAD)
+        text = head + file.read() if _is_text_of_stl(head) else b""
+    return text.lower().count(b"endfacet") if text else _stl_count(head)
 
 
 #: Bytes of a record of LAS, and of one that stands after the points.
