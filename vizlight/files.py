@@ -100,6 +100,8 @@ EXODUS = (
 )  # fmt: skip
 #: Ends of names of files of glTF, and their array of colours.
 GLTF, GLTF_COLORS = (".glb", ".gltf"), "COLOR_0"
+#: Arrays by which VTK's reader of glTF has the shapes of an animation.
+_SHAPES = re.compile(r"target\d+_")
 #: Largest number of points of a mesh: half of the addresses that processors have.
 MOST_POINTS = 1 << 40
 #: Largest rounding of points in a file of float32, as a share of the shortest side of a cell, and
@@ -521,12 +523,23 @@ def _whole(
             meaning.attach(mesh, said)
     # Their standards say that y is up; here z is.
     mesh = mesh.rotate_x(90) if suffix in Y_UP else mesh
-    if suffix in GLTF and GLTF_COLORS in mesh.point_data:
-        mesh.point_data[GLTF_COLORS] = _as_bytes(mesh.point_data[GLTF_COLORS])
+    if suffix in GLTF:
+        notes += _finish_gltf(mesh)
     # Points that only a colour tells apart have the normals of the surface, if it has no creases.
     if suffix in SOUPS and isinstance(mesh, pv.PolyData):
         normals.keep_normals(mesh)
     return mesh
+
+
+def _finish_gltf(mesh: pv.DataSet) -> list[str]:
+    """Make colours of glTF bytes and drop the shapes of an animation; return notes."""
+    if GLTF_COLORS in mesh.point_data:
+        mesh.point_data[GLTF_COLORS] = _as_bytes(mesh.point_data[GLTF_COLORS])
+    # They are differences to other shapes, and no vectors of this one.
+    shapes = [name for name in mesh.point_data if _SHAPES.match(name)]
+    for name in shapes:
+        del mesh.point_data[name]
+    return [f"shapes of its animation are left out: {', '.join(shapes)}"] if shapes else []
 
 
 def _name_in_one_line(mesh: pv.DataSet) -> None:

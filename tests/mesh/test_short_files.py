@@ -112,7 +112,6 @@ WRONG = {
     ),
     "block": ("a.mdpa", b"Begin Nodes\n 1 0.0 0.0 0.", "do not end as they begin"),
     "text": ("a.obj", OBJ.replace(b"1 0 0", b"1 0 \0"), "bytes of 0"),
-    "texture": ("a.obj", OBJ.replace(b"3/1/1", b"3/9/1"), "the texture coordinate 9 of 1"),
     "point": ("a.obj", OBJ.replace(b"3/1/1", b"8/1/1"), "the point 8 of 3"),
     "normal": ("a.obj", OBJ.replace(b"3/1/1", b"3//7"), "the normal 7 of 1"),
     "corner": ("a.obj", OBJ.replace(b"3/1/1", b"3/1/0x7fffffff"), "corner '3/1/0x7fffffff'"),
@@ -204,6 +203,12 @@ def test_colors_of_some_points_of_obj(tmp_path):
     (tmp_path / "a.obj").write_bytes(OBJ.replace(b"v 0 0 0", b"v 0 0 0 1 0 0"))
     with pytest.warns(UserWarning, match="colours of some points alone, which are left out"):
         assert "color" not in vizlight.read(tmp_path / "a.obj").point_data
+
+
+def test_texture_coordinates_that_are_missing(tmp_path):
+    (tmp_path / "a.obj").write_bytes(OBJ.replace(b"3/1/1", b"3/9/1"))
+    with pytest.warns(UserWarning, match="coordinates are left out: a face has number 9 of 1"):
+        assert vizlight.read(tmp_path / "a.obj").n_cells == 1
 
 
 @pytest.mark.filterwarnings("default:.*left out")

@@ -179,6 +179,7 @@ def _head(path: Path, count: int) -> bytes:
 
 #: Number of a texture coordinate in a corner of a face, before that of its normal.
 _TEXTURE = re.compile(rb"(?<=\d)/-?\d+(/?)")
+_OF_TEXTURE = re.compile(rb"[ \t]-?\d+/(\d+)")
 #: Lines of faces and lines, and slashes at the end of a corner.
 _CORNERS = re.compile(rb"(?m)^[ \t]*[fl][ \t].*")
 _SLASHES = re.compile(rb"(?<=\d)/+(?=[ \t\r\n]|\Z)")
@@ -204,7 +205,15 @@ def _wavefront(path: Path) -> pv.DataSet | None:
     data = _STRAIGHT.sub(rb"\1l ", whole)
     if _SLASHES.search(data):
         data = _CORNERS.sub(lambda line: _SLASHES.sub(b"", line[0]), data)
-    textured = re.search(rb"(?m)^[ \t]*vt\s", data) is not None
+    count = len(re.findall(rb"(?m)^[ \t]*vt\s", data))
+    corners = b"\n".join(_CORNERS.findall(data)) if count else b""
+    most = max(map(int, _OF_TEXTURE.findall(corners)), default=0)
+    textured = 0 < count >= most
+    if 0 < count < most:
+        _check.warn(
+            f"file: '{path}': its texture coordinates are left out: a face has number {most} of "
+            f"{count}"
+        )
     first = _VERTEX.search(data)
     colored = first is not None and len(first[0].split()) == _WITH_COLOR
     if data == whole and not colored and (textured or _TEXTURE.search(data) is None):

@@ -341,7 +341,7 @@ def _tecplot(file: BinaryIO) -> str:
 
 _IJK = (b"I", b"J", b"K")
 #: Words at the begin of lines of OBJ, and what they are, by their place in the corner of a face.
-_CORNERS_OF_OBJ = ((b"v", "point"), (b"vt", "texture coordinate"), (b"vn", "normal"))
+_CORNERS_OF_OBJ = ((0, b"v", "point"), (2, b"vn", "normal"))
 
 
 def _mdpa(file: BinaryIO) -> str:
@@ -400,13 +400,13 @@ def _obj(file: BinaryIO) -> str:
     if odd := next((word for word in words if b"x" in word.lower()), b""):
         return f"a face has the corner {odd.decode('latin-1')!a}"
     corners = [word.split(b"/") for word in words if b"/" in word]
-    for i, (key, name) in enumerate(_CORNERS_OF_OBJ):
+    for i, key, name in _CORNERS_OF_OBJ:
         # At least as many as there are: words may end so, too.
         count = text.count(key + b" ") + text.count(key + b"\t")
         numbers = (
             int(corner[i]) for corner in corners if corner[i : i + 1] and corner[i].isdigit()
         )
-        # Where a file has no texture coordinates or normals, they are left out.
+        # Where a file has no normals, or too few texture coordinates, they are left out.
         if count < (most := max(numbers, default=0)) and (count or name == "point"):
             return f"a face has the {name} {most} of {count}"
     return ""
