@@ -83,7 +83,7 @@ WHOLE = {
 WRONG = {
     "no end": ("a.nrrd", NRRD[:40], "header"),
     "dimension": ("a.nrrd", NRRD.replace(b"dimension: 3", b"dimension: 100000"), "3 sizes for"),
-    "sizes": ("a.nrrd", NRRD.replace(b"sizes: 10", b"sizes: 1000"), "of 12000 bytes"),
+    "sizes": ("a.nrrd", NRRD.replace(b"sizes: 10", b"sizes: 1000"), "of 12065 bytes"),
     "late": (
         "a.nrrd",
         NRRD.replace(b"dimension: 3\n", b"").replace(b"\n\n", b"\ndimension: 3\n\n"),
@@ -216,6 +216,21 @@ def test_normals_that_no_face_names(tmp_path):
     (tmp_path / "a.obj").write_bytes(OBJ.replace(b"/1/1", b"//"))
     with pytest.warns(UserWarning, match=r"each point are left out: \['Normals'\]"):
         assert vizlight.read(tmp_path / "a.obj").n_cells == 1
+
+
+@pytest.mark.filterwarnings("default:.*first axis")
+@pytest.mark.parametrize(
+    ("name", "content", "count"),
+    [
+        ("a.mha", META.replace(b"5 4 3", b"5 4 2"), 40),
+        ("a.nrrd", NRRD.replace(b"10 3 2", b"10 2 2"), 40),
+        ("a.pnm", b"P5\n# a comment\n2 2\n255\nabcdef", 2),
+    ],
+)
+def test_bytes_of_images_beyond_their_sizes(name, content, count, tmp_path):
+    (tmp_path / name).write_bytes(content)
+    with pytest.warns(UserWarning, match=f"has {count} bytes more than it states"):
+        vizlight.read(tmp_path / name)
 
 
 @pytest.mark.parametrize("binary", [False, True])

@@ -25,6 +25,8 @@ _IONS = {
     "LI", "NA", "K", "RB", "CS", "MG", "CA", "SR", "BA", "MN", "FE", "CO", "NI", "CU", "ZN", "CD",
     "F", "CL", "BR", "I", "HE", "NE", "AR", "KR", "XE",
 }  # fmt: skip
+#: Begin of a line of a bond, or of an atom.
+_NUMBERS = re.compile(r"\s*-?\d+[\d.]*\s+-?\d")
 
 
 def of_gro(path: Path) -> pv.PolyData:
@@ -153,6 +155,8 @@ def of_mol(path: Path) -> pv.PolyData:
         rows = lines[4 : 4 + n_atoms + n_bonds]
         if len(rows) < n_atoms + n_bonds:
             raise ValueError(f"{len(rows)} of {n_atoms + n_bonds} atoms and bonds are there")
+        if _NUMBERS.match("".join(lines[4 + n_atoms + n_bonds :][:1])):
+            raise ValueError(f"it has more than {n_atoms} atoms and {n_bonds} bonds")
         elements = [line[31:34].strip() for line in rows[:n_atoms]]
         places = [[line[:10], line[10:20], line[20:30]] for line in rows[:n_atoms]]
         ends = [[line[:3].strip(), line[3:6].strip()] for line in rows[n_atoms:]]

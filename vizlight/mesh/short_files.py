@@ -225,11 +225,21 @@ def _pnm(file: BinaryIO) -> str:
     """Compare a picture with its width and height."""
     head = file.read(_HEAD)
     gap = rb"(?:\s|#[^\n]*\n)+"
-    match = re.match(rb"P[1-6]" + gap + rb"(\d+)" + gap + rb"(\d+)\s", head)
+    match = re.match(rb"P([1-6])" + gap + rb"(\d+)" + gap + rb"(\d+)\s(?:\s*(\d+)\s)?", head)
     if not match:
         return "its width and height are missing"
+    kind, columns, rows, most = (int(word or 0) for word in match.groups())
+    if kind in _CHANNELS and most:
+        width = _CHANNELS[kind] * (1 if most < 256 else 2)
+        end = match.end() + columns * rows * width
+        file_parts.warn_of_more(Path(file.name), file.seek(0, 2) - end, "bytes")
+        return file_parts.missing_bytes(file, end)
     # A bit is the least for each pixel.
-    return file_parts.missing_bytes(file, int(match[1]) * int(match[2]) // 8)
+    return file_parts.missing_bytes(file, columns * rows // 8)
+
+
+#: Numbers of a pixel of binary pictures in gray and in colours.
+_CHANNELS = {5: 1, 6: 3}
 
 
 def _fields(lines: Sequence[bytes], between: str) -> dict[str, str]:
@@ -238,7 +248,9 @@ def _fields(lines: Sequence[bytes], between: str) -> dict[str, str]:
 
 
 def _nrrd(file: BinaryIO) -> str:
-    head, blank, _ = file.read(1 << 16).replace(b"\r\n", b"\n").partition(b"\n\n")
+    begin = file.read(1 << 16)
+    blank = re.search(rb"\r?\n\r?\n", begin)
+    head = begin[: blank.start() if blank else None].replace(b"\r\n", b"\n")
     lines = [line for line in head.split(b"\n") if not line.startswith(b"#") and b":=" not in line]
     fields = _fields(lines, ": ")
     if not all(b": " in line for line in lines[1:] if line):
@@ -263,7 +275,9 @@ def _nrrd(file: BinaryIO) -> str:
         _check.warn(
             f"file: '{file.name}': VTK reads its first axis of {sizes[0]} numbers as components"
         )
-    return _data(file, sizes, fields["type"], other, is_raw)
+    start = 0 if other or blank is None else blank.end()
+    skips = "byte skip" in fields or "line skip" in fields
+    return _data(file, sizes, fields["type"], other, is_raw, None if skips else start)
 
 
 #: Most rows of the first axis of an image of NRRD that VTK takes for components.
@@ -284,11 +298,23 @@ def _meta(file: BinaryIO) -> str:
     other = fields["ElementDataFile"]
     other = "" if other.lower() == "local" else other
     sizes.append(int(fields.get("ElementNumberOfChannels", "1")))
-    return _data(file, sizes, fields["ElementType"], other, is_raw)
+    start = 0 if other else sum(len(line) + 1 for line in lines[: last[0] + 1])
+    skips = "HeaderSize" in fields
+    return _data(file, sizes, fields["ElementType"], other, is_raw, None if skips else start)
 
 
-def _data(file: BinaryIO, sizes: Sequence[int], kind: str, other: str, is_raw: bool) -> str:
-    """Compare the sizes of an image with those of its data, in this file or another beside it."""
+def _data(
+    file: BinaryIO,
+    sizes: Sequence[int],
+    kind: str,
+    other: str,
+    is_raw: bool,
+    start: int | None,
+) -> str:
+    """Compare the sizes of an image with those of its data, in this file or another beside it.
+
+    The data begin at ``start``, unless that is None.
+    """
     if min(sizes) < 1:
         return f"its sizes are {sizes}"
     width = next((count for word, count in file_parts.BYTES.items() if word in kind.lower()), 1)
@@ -297,13 +323,16 @@ def _data(file: BinaryIO, sizes: Sequence[int], kind: str, other: str, is_raw: b
         # A zip makes data at most 1032 times smaller.
         least //= 1032
     # A name may be a pattern of several, or a list of them.
-    if not other or "%" in other or other.startswith("LIST"):
-        return file_parts.missing_bytes(file, 0 if other else least)
-    path = Path(file.name).parent / other
+    if "%" in other or other.startswith("LIST"):
+        return ""
+    path = Path(file.name).parent / other if other else Path(file.name)
     if not path.is_file():
         return f"its data in '{other}' are missing"
+    end = least + (start or 0)
+    if is_raw and start is not None:
+        file_parts.warn_of_more(path, path.stat().st_size - end, "bytes")
     with path.open("rb") as data:
-        return file_parts.missing_bytes(data, least)
+        return file_parts.missing_bytes(data, end)
 
 
 #: Corners of a cell of Tecplot by its name.
