@@ -297,7 +297,7 @@ def unreadable(path: str, code: int, seconds: float) -> str:
         why += f", {READ_VARIABLE}= allows more time"
     else:
         by = signal.Signals(-code).name if code < 0 else f"exit code {code}"
-        why = f"its reader was ended by {by}; the file may be damaged"
+        why = f"its reader was ended by {by}; the file may be damaged, or of a form that it lacks"
     return f"file: expected a file that can be read, got '{path}' ({why})"
 
 

@@ -27,6 +27,7 @@ from vizlight.mesh import (
     brains,
     cf_grids,
     ensight,
+    file_parts,
     fills,
     foreign_files,
     georeference,
@@ -55,7 +56,7 @@ from vizlight.mesh.molecules import atoms_in, backbone
 from vizlight.mesh.montages import side_by_side
 from vizlight.mesh.subdivision import simplices
 from vizlight.vtk import messages
-from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions
+from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions, used
 from vizlight.vtk.topology import place_numbers
 
 try:
@@ -99,6 +100,8 @@ EXODUS = (
 )  # fmt: skip
 #: Ends of names of files of glTF, and their array of colours.
 GLTF, GLTF_COLORS = (".glb", ".gltf"), "COLOR_0"
+#: Arrays by which VTK's reader of glTF has the shapes of an animation.
+_SHAPES = re.compile(r"target\d+_")
 #: Largest number of points of a mesh: half of the addresses that processors have.
 MOST_POINTS = 1 << 40
 #: Largest rounding of points in a file of float32, as a share of the shortest side of a cell, and
@@ -288,8 +291,7 @@ def _read(
         except series.NoStepError:
             raise
         except Exception as error:  # noqa: BLE001 - readers raise exceptions of any type
-            kind = "" if isinstance(error, FileError) else f"{type(error).__name__}: "
-            reason = f"{kind}{messages.first_line(error)}"
+            reason = messages.reason(error)
             meshes = []
         except SystemExit as error:  # so ends meshio where it finds a fault
             reason = f"its reader ended with {error.code}"
@@ -464,6 +466,8 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
             del data[key]
         if odd and (mesh.GetMaxSpatialDimension() or not of_points):
             _check.warn(f"file: arrays without a row for each {what} are left out: {odd}")
+    if path.suffix.lower() == ".stl":
+        file_parts.warn_of_less(path, mesh.n_cells, short_files.triangles(path), "triangles")
     for cells in cell_arrays(mesh):
         ids, ends = connectivity(cells)
         if len(ends) and ((ends[0], ends[-1]) != (0, len(ids)) or np.any(ends[1:] < ends[:-1])):
@@ -493,7 +497,12 @@ def _whole(
     # These formats may have points for each face or colour; an overlay has a row for each point,
     # and keeps them apart.
     if suffix in SOUPS and mesh.GetMaxSpatialDimension() == 2 and not overlays:
-        mesh = normals.welded(blocks.surface(mesh, "file"))
+        surface = blocks.surface(mesh, "file")
+        mesh = normals.welded(surface)
+        # VTK's reader of STL, which has no points of its own, keeps those of faces without area.
+        is_soup = suffix == ".stl" or mesh is surface
+        if not is_soup and (alone := np.count_nonzero(~used(surface))):
+            notes.append(f"{alone} of its {surface.n_points} points are in no face and left out")
     elif suffix in PIECES:
         # Pieces have cells of their neighbours, and points of their own along the seams.
         mesh = normals.welded(joining.without_ghosts(mesh))
@@ -514,12 +523,23 @@ def _whole(
             meaning.attach(mesh, said)
     # Their standards say that y is up; here z is.
     mesh = mesh.rotate_x(90) if suffix in Y_UP else mesh
-    if suffix in GLTF and GLTF_COLORS in mesh.point_data:
-        mesh.point_data[GLTF_COLORS] = _as_bytes(mesh.point_data[GLTF_COLORS])
+    if suffix in GLTF:
+        notes += _finish_gltf(mesh)
     # Points that only a colour tells apart have the normals of the surface, if it has no creases.
     if suffix in SOUPS and isinstance(mesh, pv.PolyData):
         normals.keep_normals(mesh)
     return mesh
+
+
+def _finish_gltf(mesh: pv.DataSet) -> list[str]:
+    """Make colours of glTF bytes and drop the shapes of an animation; return notes."""
+    if GLTF_COLORS in mesh.point_data:
+        mesh.point_data[GLTF_COLORS] = _as_bytes(mesh.point_data[GLTF_COLORS])
+    # They are differences to other shapes, and no vectors of this one.
+    shapes = [name for name in mesh.point_data if _SHAPES.match(name)]
+    for name in shapes:
+        del mesh.point_data[name]
+    return [f"shapes of its animation are left out: {', '.join(shapes)}"] if shapes else []
 
 
 def _name_in_one_line(mesh: pv.DataSet) -> None:
@@ -579,7 +599,7 @@ def _unpacked(path: Path, read: Callable[[Path], list[pv.DataSet]]) -> list[pv.D
                     if file.tell() > MOST_UNPACKED:
                         raise _damaged(path, f"more than {MOST_UNPACKED} bytes are in it")
         except (OSError, EOFError, lzma.LZMAError, zlib.error) as error:
-            raise _damaged(path, messages.first_line(error)) from error
+            raise _damaged(path, messages.reason(error)) from error
         try:
             with _check.held(str(inner), str(path)):
                 return read(inner)

@@ -19,6 +19,12 @@ import pyvista as pv
         ("light flow.vti --size 9000x100", "size: expected at most 8192 pixels per side"),
         ("light flow.vti --view 0,0,1 --up 0,0,2", "up: expected a direction across"),
         ("light bad.vtp", "file: expected a mesh that PyVista reads"),
+        # It has a line more than it states, which is a note of a file that is lit.
+        pytest.param(
+            "light more.ply -o a.vti",
+            "output: expected a name that ends in .vtp",
+            marks=pytest.mark.filterwarnings("default"),
+        ),
         ("light", "requires an argument"),
         ("light flow.vti --tangents U", "tangents: expected the name of an array, one of"),
         ("light flow.vti --tangents r", "tangents: expected vectors"),
@@ -116,6 +122,8 @@ def test_bad_input_is_one_line_and_exit_code_2(line, words, folder, monkeypatch,
     monkeypatch.setattr("tempfile.tempdir", str(folder))
     Path("list.json").write_text("[1, 2]")
     Path("bad.vtp").write_text("garbage")
+    pv.Triangle().save("more.ply", binary=False)
+    Path("more.ply").write_text(f"{Path('more.ply').read_text()}1 2 3\n")
     pv.PolyData(np.random.default_rng(0).random((30, 3))).save("scan.vtp")
     before = sorted(folder.iterdir())
     err = refused(line)

@@ -85,6 +85,17 @@ def grid(variables, coords, **options):
     return vizlight.read(xr.Dataset(variables, coords), **options)
 
 
+def test_names_that_are_not_of_utf_8(tmp_path):
+    netcdf = pytest.importorskip("scipy.io").netcdf_file
+    with netcdf(tmp_path / "a.nc", "w") as file:
+        for name in "yx":
+            file.createDimension(name, 3)
+        band = file.createVariable("band", "f4", ("y", "x"))
+        band[:] = np.arange(9).reshape(3, 3)
+        setattr(band, "Bandwidth (\xb5m)", "35")
+    np.testing.assert_array_equal(vizlight.read(tmp_path / "a.nc")["band"], np.arange(9))
+
+
 def test_lengths_in_kilometres_and_what_the_axes_are():
     x, y = {"units": "km", "axis": "X"}, {"units": "km", "axis": "Y"}
     mesh = grid(

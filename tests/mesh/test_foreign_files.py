@@ -92,7 +92,7 @@ def test_a_tractogram_is_lit_and_kept(tmp_path):
 
 @pytest.mark.parametrize("name", ["empty.trk", "empty.tck", "no_header_end.tck"])
 def test_a_tractogram_without_lines_or_header(name):
-    with pytest.raises(files.FileError, match=rf"got '.*{name}' \((no points|HeaderError: Miss)"):
+    with pytest.raises(files.FileError, match=rf"got '.*{name}' \((no points|Miss)"):
         vizlight.read(tract(name))
 
 
@@ -217,7 +217,7 @@ def test_a_file_that_a_reader_of_meshio_refuses(tmp_path, capsys):
     pytest.importorskip("meshio")
     path = tmp_path / "a.wkt"
     path.write_text("POINT (1 2)")
-    with pytest.raises(files.FileError, match=r"a\.wkt.*ReadError: Invalid WKT"):
+    with pytest.raises(files.FileError, match=r"a\.wkt' \(Invalid WKT"):
         vizlight.read(path)
     assert capsys.readouterr().out == ""
 
@@ -352,10 +352,23 @@ def test_tracts_whose_header_has_no_size(tmp_path):
     lines = nibabel.streamlines.Tractogram([np.eye(3, dtype="f4")], affine_to_rasmm=np.eye(4))
     nibabel.streamlines.save(lines, str(tmp_path / "a.trk"))
     data = bytearray((tmp_path / "a.trk").read_bytes())
+    (tmp_path / "a.trk").write_bytes(data + bytes(12))
+    with pytest.warns(UserWarning, match="has 12 bytes more than it states"):
+        vizlight.read(tmp_path / "a.trk")
     data[12:24] = bytes(12)
     (tmp_path / "a.trk").write_bytes(data)
     with pytest.raises(files.FileError, match="no point is finite, by the affine of its header"):
         vizlight.read(tmp_path / "a.trk")
+
+
+def test_tracts_that_are_fewer_than_their_header_states(tmp_path):
+    nibabel = pytest.importorskip("nibabel")
+    lines = nibabel.streamlines.Tractogram([np.eye(3, dtype="f4")], affine_to_rasmm=np.eye(4))
+    nibabel.streamlines.save(lines, str(tmp_path / "a.tck"))
+    data = (tmp_path / "a.tck").read_bytes()
+    (tmp_path / "a.tck").write_bytes(data.replace(b"count: 0000000001", b"count: 0000000002"))
+    with pytest.warns(UserWarning, match="gives 1 of the 2 streamlines that it states"):
+        assert vizlight.read(tmp_path / "a.tck").n_lines == 1
 
 
 @pytest.mark.parametrize(

@@ -51,6 +51,13 @@ def test_a_whole_file_is_read(tmp_path):
     assert vizlight.read(tmp_path / "a.gltf").n_points == 3
 
 
+def test_shapes_of_an_animation_are_no_vectors(tmp_path):
+    shape = {"attributes": {"POSITION": 0}, "targets": [{"POSITION": 0}]}
+    (tmp_path / "a.gltf").write_bytes(gltf("meshes", primitives=[shape], weights=[0.0]))
+    with pytest.warns(UserWarning, match="its animation are left out: target0_position"):
+        assert not vizlight.read(tmp_path / "a.gltf").point_data
+
+
 @pytest.mark.parametrize("kind", WRONG)
 def test_parts_that_do_not_fit_are_refused(kind, tmp_path):
     content, words = WRONG[kind]

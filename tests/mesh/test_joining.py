@@ -119,6 +119,12 @@ def test_fields_that_all_share_and_the_active_vectors_stay():
     grid = joining.joined((mesh, "") for mesh in parts).grid
     assert [*grid.field_data] == ["unit"]
     assert grid.point_data.active_vectors_name == "U"
+    for part in parts:
+        part.point_data["N"] = np.ones((part.n_points, 3), np.float32)
+    for part, expected in zip(parts, (None, "N"), strict=True):
+        part.point_data.active_normals_name = "N"
+        grid = joining.joined((mesh, "") for mesh in parts).grid
+        assert grid.point_data.active_normals_name == expected
 
 
 def test_hidden_cells_of_one_block_stay_hidden():

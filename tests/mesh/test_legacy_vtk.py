@@ -95,6 +95,15 @@ def test_a_legacy_file_that_ends_before_its_cells(tmp_path):
         vizlight.read(path)
 
 
+@pytest.mark.parametrize("word", [b"CELLS", b"CELL_TYPES"])
+def test_cells_without_their_number_or_their_types(word, tmp_path):
+    pv.ImageData(dimensions=(3, 3, 2)).to_tetrahedra().save(tmp_path / "a.vtk", binary=False)
+    data = (tmp_path / "a.vtk").read_bytes()
+    (tmp_path / "a.vtk").write_bytes(data.replace(b"\n" + word + b" ", b"\n"))
+    with pytest.raises(FileError, match="a list of cells has no number|its cells have no types"):
+        vizlight.read(tmp_path / "a.vtk")
+
+
 @pytest.mark.parametrize("binary", [False, True])
 def test_polyhedra_of_legacy_files_have_whole_faces(tmp_path, binary):
     path = tmp_path / "a.vtk"

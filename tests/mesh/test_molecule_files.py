@@ -109,7 +109,10 @@ def test_bonds_are_those_of_mdl(text, tmp_path):
         ("a.gro", GRO.replace("1.500", "  abc"), "words where its numbers are"),
         ("a.mol2", MOL2.replace("1 7 9 2", "1 7 8 2"), "a bond has the atom 8, which is not"),
         ("a.mol2", "@<TRIPOS>MOLECULE\n", "it has no atoms"),
+        ("a.mol2", MOL2.replace("\n2 1", "\n3 1"), "2 of 3 atoms are there"),
+        ("a.mol", V3000.replace("COUNTS 3 1", "COUNTS 3 2"), "1 of 2 bonds are there"),
         ("a.mol", MOL.replace("  1  2  1  0\nM  END\n", ""), "3 of 4 atoms and bonds are there"),
+        ("a.mol", MOL.replace("  3  1", "  3  0"), "it has more than 3 atoms and 0 bonds"),
         ("a.sdf", "<sdf version='1.6'>\n", "no number of atoms or bonds in ''"),
     ],
 )

@@ -102,6 +102,7 @@ def test_texture_of_the_corners_of_faces_parts_points(tmp_path):
         (("element face x", LIST), (), "its header has the line 'element face x'"),
         (("property list quark int a",), (), "its header has the line"),
         (("property float",), (), "its header has the line 'property float'"),
+        (("-inf int a",), (), "its header has the line '-inf int a'"),
     ],
 )  # fmt: skip
 def test_damage_is_refused(head, rows, words, tmp_path):
@@ -135,7 +136,7 @@ def test_what_is_no_whole_file(data, words, tmp_path):
 
 
 def test_the_last_line_of_a_text(tmp_path):
-    whole = text(*POINTS, "3 0 1 2", head=("element face 1", LIST))
+    whole = text(*POINTS, "4 0 1 2 3", head=("element face 1", LIST))
     expected = read(tmp_path, whole)
     with pytest.warns(UserWarning, match="may be cut in its last line, which has no line break"):
         assert read(tmp_path, whole[:-1]) == expected
@@ -176,6 +177,15 @@ def test_more_rows_than_stated(tmp_path):
     data = text(form="binary_little_endian") + np.zeros((4, 3), "<f4").tobytes()
     with pytest.warns(UserWarning, match="has 3 bytes more than it states"):
         assert read(tmp_path, data + b"abc\n").n_points == 4
+    faces = text(*POINTS, "4 0 1 2 3 7 7", "3 0 1 2 7", head=("element face 2", LIST))
+    with pytest.warns(UserWarning, match="has 3 numbers more than it states"):
+        assert read(tmp_path, faces).n_cells == 2
+
+
+def test_points_in_no_face(tmp_path):
+    with pytest.warns(UserWarning, match="1 of its 4 points are in no face and left out"):
+        mesh = read(tmp_path, text(*POINTS, "3 0 1 2", head=("element face 1", LIST)))
+    assert mesh.n_points == 3
 
 
 def test_counts_in_the_billions(tmp_path):

@@ -83,7 +83,7 @@ WHOLE = {
 WRONG = {
     "no end": ("a.nrrd", NRRD[:40], "header"),
     "dimension": ("a.nrrd", NRRD.replace(b"dimension: 3", b"dimension: 100000"), "3 sizes for"),
-    "sizes": ("a.nrrd", NRRD.replace(b"sizes: 10", b"sizes: 1000"), "of 12000 bytes"),
+    "sizes": ("a.nrrd", NRRD.replace(b"sizes: 10", b"sizes: 1000"), "of 12065 bytes"),
     "late": (
         "a.nrrd",
         NRRD.replace(b"dimension: 3\n", b"").replace(b"\n\n", b"\ndimension: 3\n\n"),
@@ -112,7 +112,6 @@ WRONG = {
     ),
     "block": ("a.mdpa", b"Begin Nodes\n 1 0.0 0.0 0.", "do not end as they begin"),
     "text": ("a.obj", OBJ.replace(b"1 0 0", b"1 0 \0"), "bytes of 0"),
-    "texture": ("a.obj", OBJ.replace(b"3/1/1", b"3/9/1"), "the texture coordinate 9 of 1"),
     "point": ("a.obj", OBJ.replace(b"3/1/1", b"8/1/1"), "the point 8 of 3"),
     "normal": ("a.obj", OBJ.replace(b"3/1/1", b"3//7"), "the normal 7 of 1"),
     "corner": ("a.obj", OBJ.replace(b"3/1/1", b"3/1/0x7fffffff"), "corner '3/1/0x7fffffff'"),
@@ -206,11 +205,41 @@ def test_colors_of_some_points_of_obj(tmp_path):
         assert "color" not in vizlight.read(tmp_path / "a.obj").point_data
 
 
+def test_texture_coordinates_that_are_missing(tmp_path):
+    (tmp_path / "a.obj").write_bytes(OBJ.replace(b"3/1/1", b"3/9/1"))
+    with pytest.warns(UserWarning, match="coordinates are left out: a face has number 9 of 1"):
+        assert vizlight.read(tmp_path / "a.obj").n_cells == 1
+
+
 @pytest.mark.filterwarnings("default:.*left out")
 def test_normals_that_no_face_names(tmp_path):
     (tmp_path / "a.obj").write_bytes(OBJ.replace(b"/1/1", b"//"))
     with pytest.warns(UserWarning, match=r"each point are left out: \['Normals'\]"):
         assert vizlight.read(tmp_path / "a.obj").n_cells == 1
+
+
+@pytest.mark.filterwarnings("default:.*first axis")
+@pytest.mark.parametrize(
+    ("name", "content", "count"),
+    [
+        ("a.mha", META.replace(b"5 4 3", b"5 4 2"), 40),
+        ("a.nrrd", NRRD.replace(b"10 3 2", b"10 2 2"), 40),
+        ("a.pnm", b"P5\n# a comment\n2 2\n255\nabcdef", 2),
+    ],
+)
+def test_bytes_of_images_beyond_their_sizes(name, content, count, tmp_path):
+    (tmp_path / name).write_bytes(content)
+    with pytest.warns(UserWarning, match=f"has {count} bytes more than it states"):
+        vizlight.read(tmp_path / name)
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_triangles_of_stl_without_area(binary, tmp_path):
+    mesh = pv.Sphere(theta_resolution=6, phi_resolution=6)
+    mesh.points[-1] = mesh.points[-2]
+    mesh.save(tmp_path / "a.stl", binary=binary)
+    with pytest.warns(UserWarning, match="gives 46 of the 48 triangles that it states"):
+        assert vizlight.read(tmp_path / "a.stl").n_cells == 46
 
 
 @pytest.mark.filterwarnings("default:.*first axis")

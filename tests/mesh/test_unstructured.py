@@ -124,6 +124,10 @@ def test_meshes_of_fewer_faces_than_corners():
     mesh = vizlight.read(xr.Dataset({"h": ("node", np.arange(5.0)), **table, **places}))
     assert mesh.n_cells == 2
     np.testing.assert_array_equal(mesh["h"], np.arange(5))
+    table = {"nv": (("three", "nele"), np.array([[0, 1, 2], [1, 3, 2], [1, 4, 3], [2, 3, 0]]).T)}
+    assert (
+        vizlight.read(xr.Dataset({"h": ("node", np.arange(5.0)), **table, **places})).n_cells == 4
+    )
     table = {"faces": (("face", "four"), [[0, 1, 3, 2], [1, 4, 3, -1]])}
     values = {"v": ("face", [5.0, 6]), "mesh": ((), 0, UGRID)}
     mesh = vizlight.read(xr.Dataset({**values, **table, **places}))

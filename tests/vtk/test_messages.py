@@ -39,3 +39,18 @@ def test_what_pyvista_repeats_is_no_record(caplog):
             pool.submit(Observer().log_message, "ERROR", "elsewhere").result()
     Observer().log_message("WARNING", "after")
     assert [record.message for record in caplog.records] == ["another", "elsewhere", "after"]
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (UnicodeDecodeError("utf-8", b"a\xb5", 1, 2, "x"), "the byte 0xb5, which is not of UTF-8"),
+        (KeyError(5), "its parts do not fit together, by KeyError: 5"),
+        (AssertionError(), "its parts do not fit together, by AssertionError"),
+        (MemoryError(), "it asks for more memory than there is"),
+        (OSError(-101, "NetCDF: HDF error"), "NetCDF: HDF error"),
+        (ValueError("3 of 4\nrows"), "3 of 4"),
+    ],
+)
+def test_errors_of_readers_are_words(error, words):
+    assert messages.reason(error).endswith(words)

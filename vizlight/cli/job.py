@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import vizlight
 from vizlight._supervise import BAD_INPUT
 from vizlight._words import message
-from vizlight.cli.output import OK, complain, draw, one_line, say
+from vizlight.cli.output import OK, add_note, complain, draw, notes_at_end, one_line, say
 from vizlight.cli.scenes import times
 from vizlight.looks.steps import Step, in_order, source, written
 
@@ -90,16 +90,19 @@ class Command:
         codes = [OK]
         for group in groups:
             try:
-                for i, time in enumerate([None] if joined else times(group[0], self.part)):
-                    look = self._look(group, time)
-                    ending = self.stem if self.part.times is None else f"{self.stem}-{i:04d}"
-                    outputs = _outputs(look, f"{group[0].stem}-{ending}", out, paths)
-                    if out.script:
-                        last = [step for steps in outputs for step in steps]
-                        read = look.read_steps() if self.read else []
-                        scripts.append([*(_checks(look) if out.report else []), *read, *last])
-                    else:
-                        codes.append(self._run(look, outputs))
+                # A file that is refused has no notes.
+                with notes_at_end():
+                    for i, time in enumerate([None] if joined else times(group[0], self.part)):
+                        look = self._look(group, time)
+                        ending = self.stem if self.part.times is None else f"{self.stem}-{i:04d}"
+                        outputs = _outputs(look, f"{group[0].stem}-{ending}", out, paths)
+                        if out.script:
+                            last = [step for steps in outputs for step in steps]
+                            read = look.read_steps() if self.read else []
+                            checks = _checks(look) if out.report else []
+                            scripts.append([*checks, *read, *last])
+                        else:
+                            codes.append(self._run(look, outputs))
             except (TypeError, ValueError, OSError) as error:
                 # The error of a single file becomes the command's.
                 if len(groups) == 1:
@@ -170,7 +173,7 @@ class Command:
         if self.tell is not None and (text := self.tell(look)):
             say(text)
         for warning in caught:
-            complain(one_line(warning.message))
+            add_note(warning.message)
         name = _name(look)
         record = vizlight.provenance(lit, name)
         terms = " + ".join(record.get("terms", [name]))

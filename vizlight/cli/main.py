@@ -15,7 +15,7 @@ from cyclopts import CycloptsError
 from vizlight._supervise import BAD_INPUT, LACKING
 from vizlight.cli import commands, options  # noqa: F401 - the commands are in app
 from vizlight.cli.options import HELP, Backend, app
-from vizlight.cli.output import OK, complain, console, draw, one_line, say
+from vizlight.cli.output import OK, add_note, complain, console, draw, notes_at_end, one_line, say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,8 +32,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if arguments is None else list(arguments)
     logging.disable()  # PyVista logs what VTK says, which the message of an error says too
     try:
-        with warnings.catch_warnings():
-            warnings.showwarning = _complain
+        with warnings.catch_warnings(), notes_at_end():
+            warnings.showwarning = _note
             words = _with_command(words)
             if HELP.intersection(words):
                 # By itself the app reads all arguments of the command before it prints its help.
@@ -64,10 +64,10 @@ def _with_command(words: list[str]) -> list[str]:
     return words
 
 
-def _complain(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
+def _note(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
     # The error of reading repeats VTK's words.
     if category.__name__ != "VTKExecutionWarning":
-        complain(" ".join(str(message).split()))
+        add_note(message)
 
 
 def _fail(error: object) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shlex
@@ -13,12 +14,14 @@ from vizlight import _words
 from vizlight._supervise import LACKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from rich.console import Console
 
 #: Exit code of success, beside those of ``_supervise``.
 OK = 0
+#: Notes of blocks that have not ended, the innermost last.
+_notes: list[list[str]] = []
 #: Characters per line where the output is a file or a pipe, which has no width of its own.
 WIDTH = 140
 
@@ -68,6 +71,25 @@ def _option(match: re.Match[str]) -> str:
 def complain(text: object) -> None:
     """Write a line to standard error."""
     _put(sys.stderr, f"vizlight: {_words.printable(str(text))}\n")
+
+
+def add_note(text: object) -> None:
+    """Keep a line for standard error until the block of :func:`notes_at_end` ends."""
+    _notes[-1].append(one_line(text))
+
+
+@contextlib.contextmanager
+def notes_at_end() -> Iterator[None]:
+    """Write the notes of a block when it ends, each once; an error comes without them."""
+    _notes.append([])
+    ended = False
+    try:
+        yield
+        ended = True
+    finally:
+        notes = _notes.pop()
+        for text in dict.fromkeys(notes) if ended else ():
+            complain(text)
 
 
 def draw(write: Callable[[], Path], kind: str = "picture") -> int:

@@ -47,9 +47,12 @@ def exposure_seen(
     if not isinstance(mesh, pv.PolyData):
         return 1.0
     toward = np.subtract(camera.position, camera.focal_point)
-    corners = seen_triangles(mesh, tuple(toward.tolist())).ravel()
-    if not len(corners):
+    triangles = seen_triangles(mesh, tuple(toward.tolist()))
+    if not len(triangles):
         return 1.0
+    # Two copies of a triangle would be a closed surface.
+    single, copies = np.unique(triangles, axis=0, return_inverse=True)
+    corners = single.ravel()
     # No corner is shared: each triangle has the light of its own plane.
     faces = np.arange(len(corners)).reshape(-1, 3)
     seen = blocks.polydata(np.asarray(mesh.points)[corners], faces)
@@ -62,7 +65,9 @@ def exposure_seen(
     options.pop("feature_angle", None)
     lit = illuminate(seen, scene, **options, name=LIGHT)
     rgb = part_name(LIGHT, "rgb")
-    return float(f"{exposure_of(lit[rgb if rgb in lit.point_data else LIGHT]):.2g}")
+    luminance = np.asarray(lit[rgb if rgb in lit.point_data else LIGHT])
+    of_corners = luminance.reshape(len(single), 3, -1)[copies.ravel()]
+    return float(f"{exposure_of(of_corners.reshape(-1, *luminance.shape[1:])):.2g}")
 
 
 def _of_corners(mesh: pv.DataSet, value: Foreign, corners: Indices) -> Foreign:

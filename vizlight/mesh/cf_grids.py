@@ -205,6 +205,12 @@ def read(
         options: Keywords = {"engine": _engine(path), "decode_times": False}
         try:
             opened = xarray.open_dataset(path, decode_coords="all", **options)
+        except UnicodeDecodeError:
+            # The library of netCDF takes names in UTF-8 alone, SciPy those of its older files too.
+            if options["engine"] == "zarr" or path.read_bytes()[:3] != b"CDF":
+                raise
+            options["engine"] = "scipy"
+            opened = xarray.open_dataset(path, decode_coords="all", **options)
         except ValueError as error:
             if "cannot decode" not in str(error):
                 raise

@@ -55,6 +55,22 @@ def warn_of_more(path: Path, count: int, unit: str) -> None:
         _check.warn(f"file: '{path}' has {count} {unit} more than it states, which are left out")
 
 
+def warn_of_less(path: Path, count: int, stated: int, unit: str) -> None:
+    """Warn where a file gives less than it states.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    count, stated : int
+        Number of parts that are read, and that of the file.
+    unit : str
+        Word for them.
+    """
+    if count < stated:
+        _check.warn(f"file: '{path}' gives {count} of the {stated} {unit} that it states")
+
+
 @contextlib.contextmanager
 def errors_of_gemmi(path: Path) -> Iterator[None]:
     """Raise ValueError in one line for an error of gemmi, with the number of a line of a text."""

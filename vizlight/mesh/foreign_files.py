@@ -179,6 +179,7 @@ def _head(path: Path, count: int) -> bytes:
 
 #: Number of a texture coordinate in a corner of a face, before that of its normal.
 _TEXTURE = re.compile(rb"(?<=\d)/-?\d+(/?)")
+_OF_TEXTURE = re.compile(rb"[ \t]-?\d+/(\d+)")
 #: Lines of faces and lines, and slashes at the end of a corner.
 _CORNERS = re.compile(rb"(?m)^[ \t]*[fl][ \t].*")
 _SLASHES = re.compile(rb"(?<=\d)/+(?=[ \t\r\n]|\Z)")
@@ -204,7 +205,15 @@ def _wavefront(path: Path) -> pv.DataSet | None:
     data = _STRAIGHT.sub(rb"\1l ", whole)
     if _SLASHES.search(data):
         data = _CORNERS.sub(lambda line: _SLASHES.sub(b"", line[0]), data)
-    textured = re.search(rb"(?m)^[ \t]*vt\s", data) is not None
+    count = len(re.findall(rb"(?m)^[ \t]*vt\s", data))
+    corners = b"\n".join(_CORNERS.findall(data)) if count else b""
+    most = max(map(int, _OF_TEXTURE.findall(corners)), default=0)
+    textured = 0 < count >= most
+    if 0 < count < most:
+        _check.warn(
+            f"file: '{path}': its texture coordinates are left out: a face has number {most} of "
+            f"{count}"
+        )
     first = _VERTEX.search(data)
     colored = first is not None and len(first[0].split()) == _WITH_COLOR
     if data == whole and not colored and (textured or _TEXTURE.search(data) is None):
@@ -440,7 +449,8 @@ def _tracts(path: Path) -> pv.PolyData:
 
     # nibabel applies the affine of the header: points are in RAS+ and in mm, not in voxels.
     with np.errstate(all="ignore"), warnings.catch_warnings(record=True) as said:
-        tracts: Foreign = nibabel.streamlines.load(path).tractogram
+        file: Foreign = nibabel.streamlines.load(path)
+    tracts = file.tractogram
     lines = tracts.streamlines
     if len(lines) and not np.isfinite(lines.get_data()).any():
         raise ValueError("no point is finite, by the affine of its header")
@@ -452,6 +462,14 @@ def _tracts(path: Path) -> pv.PolyData:
         if len(lines) < header["nb_streamlines"]:
             reason = f"{len(lines)} of {header['nb_streamlines']} streamlines are there"
             raise ValueError(reason)
+        # A number of 4 bytes for each line, place, scalar of a point and property of a line.
+        of_point = 3 + int(header["nb_scalars_per_point"])
+        of_line = 1 + int(header["nb_properties_per_streamline"])
+        numbers = of_line * len(lines) + of_point * len(lines.get_data())
+        size = path.stat().st_size - int(header["hdr_size"]) - 4 * numbers
+        file_parts.warn_of_more(path, size, "bytes")
+    else:
+        file_parts.warn_of_less(path, len(lines), int(file.header.get("count", 0)), "streamlines")
     return _polylines(
         lines.get_data(),
         lines._offsets,

@@ -76,9 +76,10 @@ def read_off(path: Path) -> pv.PolyData:
     sizes, corners = np.diff(ends), np.array(ids, dtype=int)
     mesh.SetPolys(_of_sizes(corners, sizes, sizes > 2))
     mesh.SetLines(_of_sizes(corners, sizes, sizes == 2))
+    mesh.SetVerts(_of_sizes(corners, sizes, sizes == 1))
     if not faces:
         mesh.SetVerts(blocks.cell_array(np.arange(points), np.arange(points + 1)))
-    if colors and mesh.n_lines == 0 and {len(row) for row in colors} in ({3}, {4}):
+    if colors and mesh.GetNumberOfPolys() == faces and {len(row) for row in colors} in ({3}, {4}):
         mesh.cell_data["color"] = _bytes(_table(colors))
     return mesh
 

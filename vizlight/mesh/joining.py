@@ -275,7 +275,8 @@ def _activate(data: Foreign, others: Sequence[Foreign]) -> None:
         names = {array.GetName() for array in active if array is not None}
         # Scalars and vectors may be NaN in places; normals, weights and the like may not.
         partly = kind in (data.SCALARS, data.VECTORS)
-        if len(names) == 1 and (partly or None not in active):
+        # By "is": arrays of VTK compare their values by "==".
+        if len(names) == 1 and (partly or all(array is not None for array in active)):
             data.SetActiveAttribute(names.pop() or "", kind)
 
 

@@ -92,7 +92,26 @@ def missing_part(file: BinaryIO) -> str:
         )
         wide = (_components(data, at) for at in file_parts.places(data, b"\nSCALARS "))
         ends = (_after_points(data, at, is_text) for at in file_parts.places(data, b"\nPOINTS "))
-        return next(filter(None, itertools.chain(fields, ends, cells, types, named, wide)), "")
+        others = (_headless(data),)
+        return next(
+            filter(None, itertools.chain(fields, ends, cells, types, named, wide, others)), ""
+        )
+
+
+def _headless(data: mmap.mmap | bytes) -> str:
+    """Return the reason why cells are lost, as VTK skips what stands before a word that it knows.
+
+    Since version 5 each list of cells has the word OFFSETS; cells of a grid have types.
+    """
+    counts = {
+        word: sum(1 for _ in file_parts.places(data, b"\n" + word))
+        for word in (*_CELLS, b"OFFSETS ", b"CELL_TYPES ")
+    }
+    if counts[b"OFFSETS "] > sum(counts[word] for word in _CELLS):
+        return "a list of cells has no number of them"
+    if counts[b"CELLS "] != counts[b"CELL_TYPES "] and data.find(b" UNSTRUCTURED_GRID") >= 0:
+        return "its cells have no types, or types no cells"
+    return ""
 
 
 def _named(data: mmap.mmap | bytes, at: int) -> str:

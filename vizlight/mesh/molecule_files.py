@@ -25,6 +25,8 @@ _IONS = {
     "LI", "NA", "K", "RB", "CS", "MG", "CA", "SR", "BA", "MN", "FE", "CO", "NI", "CU", "ZN", "CD",
     "F", "CL", "BR", "I", "HE", "NE", "AR", "KR", "XE",
 }  # fmt: skip
+#: Begin of a line of a bond, or of an atom.
+_NUMBERS = re.compile(r"\s*-?\d+[\d.]*\s+-?\d")
 
 
 def of_gro(path: Path) -> pv.PolyData:
@@ -110,9 +112,12 @@ def of_mol2(path: Path) -> pv.PolyData:
         head.strip(): [line.split() for line in body.splitlines() if line.strip()]
         for head, _, body in (part.partition("\n") for part in first.split("@<TRIPOS>")[1:])
     }
-    atoms = rows.get("ATOM", [])
+    atoms, bonds = rows.get("ATOM", []), rows.get("BOND", [])
+    # The counts stand below the name of the molecule.
+    lines = [line for line in first.splitlines() if not line.startswith("#")]
+    _check_counts(lines[2:3], atoms, bonds)
     elements = [" ".join(row[5:6]).partition(".")[0] for row in atoms]
-    pairs = _pairs([row[0] for row in atoms], [row[1:3] for row in rows.get("BOND", [])])
+    pairs = _pairs([row[0] for row in atoms], [row[1:3] for row in bonds])
     mesh = molecules.joined(elements, _numbers([row[2:5] for row in atoms]), pairs)
     if all(len(row) > 8 for row in atoms):
         mesh.point_data["charge"] = _numbers([row[8:9] for row in atoms])[:, 0]
@@ -142,6 +147,7 @@ def of_mol(path: Path) -> pv.PolyData:
             [line.split() for line in "".join(re.findall(part, text)[:1]).splitlines() if line]
             for part in parts.values()
         )
+        _check_counts(re.findall(r"(?m)^COUNTS (.*)", text)[:1], atoms, bonds)
         elements, places = [row[1] for row in atoms], [row[2:5] for row in atoms]
         pairs = _pairs([row[0] for row in atoms], [row[2:4] for row in bonds])
     else:
@@ -149,6 +155,8 @@ def of_mol(path: Path) -> pv.PolyData:
         rows = lines[4 : 4 + n_atoms + n_bonds]
         if len(rows) < n_atoms + n_bonds:
             raise ValueError(f"{len(rows)} of {n_atoms + n_bonds} atoms and bonds are there")
+        if _NUMBERS.match("".join(lines[4 + n_atoms + n_bonds :][:1])):
+            raise ValueError(f"it has more than {n_atoms} atoms and {n_bonds} bonds")
         elements = [line[31:34].strip() for line in rows[:n_atoms]]
         places = [[line[:10], line[10:20], line[20:30]] for line in rows[:n_atoms]]
         ends = [[line[:3].strip(), line[3:6].strip()] for line in rows[n_atoms:]]
@@ -168,6 +176,14 @@ def _count(word: str) -> int:
     if not word.strip().isdigit():
         raise ValueError(f"no number of atoms or bonds in {word[:40]!r}")
     return int(word)
+
+
+def _check_counts(lines: Sequence[str], *parts: Sequence[object]) -> None:
+    """Compare the atoms and the bonds with the numbers at the begin of a line, if there is one."""
+    stated = " ".join(lines).split()
+    for what, rows, count in zip(("atoms", "bonds"), parts, stated, strict=False):
+        if _count(count) != len(rows):
+            raise ValueError(f"{len(rows)} of {count} {what} are there")
 
 
 def _numbers(rows: Sequence[Sequence[str]]) -> Array:

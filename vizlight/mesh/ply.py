@@ -29,6 +29,8 @@ _TYPES = {
 }  # fmt: skip
 #: Data begin right after the line break; white space there may already be numbers.
 _HEAD = re.compile(rb"(?:ply|PLY)\s.*?^end_header[ \t]*\r?\n", re.DOTALL | re.MULTILINE)
+#: Words of other lines of a header.
+_OTHER_WORDS = ("ply", "PLY", "comment", "obj_info", "end_header")
 #: Begin of a row.
 _NUMBER = re.compile(rb"\s*[-+.]?\d")
 #: Arrays of several numbers of a vertex or a face, by the names that programs give these.
@@ -109,6 +111,8 @@ def _header(text: str) -> tuple[str, list[_Element]]:
                 elements[-1].kinds[name] = types[-1]
                 if words[1] == "list":
                     elements[-1].lengths[name], _ = types
+            elif words and words[0] not in _OTHER_WORDS:
+                raise ValueError(words[0])
         except (LookupError, ValueError) as error:
             raise ValueError(f"its header has the line {' '.join(words)!r}") from error
     if form not in ("ascii", "binary_little_endian", "binary_big_endian"):
@@ -136,6 +140,8 @@ def _read_text(data: bytes, elements: list[_Element], path: Path) -> None:
                 raise _short(len(short), len(element.kinds))
             for i, (name, kind) in enumerate(element.kinds.items()):
                 element.columns[name] = _numbers([row[i] for row in rows], kind)
+        used = len(element.sizes) * element.count + sum(map(len, element.columns.values()))
+        file_parts.warn_of_more(path, sum(map(len, rows)) - used, "numbers")
     if first == len(lines) and lines:
         file_parts.warn_of_last_line(path, data)
     # Other lines are comments of other programs.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 
-__all__ = ["missing_part"]
+__all__ = ["missing_part", "triangles"]
 
 #: Bytes in which a header stands that has no end of its own.
 _HEAD = 4096
@@ -148,12 +148,31 @@ def _stl(file: BinaryIO) -> str:
     head = file.read(_STL_HEAD)
     if len(head) < _STL_HEAD:
         return ""  # VTK's reader says so
-    # Binary files may begin with this word, too, but a text has no bytes of 0.
-    if head.lstrip()[:5].lower() == b"solid" and b"\0" not in head:
+    if _is_text_of_stl(head):
         return "" if b"endsolid" in file_parts.last(file).lower() else "its end is missing"
-    return file_parts.missing_bytes(
-        file, _STL_HEAD + _STL_TRIANGLE * struct.unpack("<I", head[-4:])[0]
-    )
+    return file_parts.missing_bytes(file, _STL_HEAD + _STL_TRIANGLE * _stl_count(head))
+
+
+def _is_text_of_stl(head: bytes) -> bool:
+    """Return whether a file is text; binary ones may begin with this word, but have bytes of 0."""
+    return head.lstrip()[:5].lower() == b"solid" and b"\0" not in head
+
+
+def _stl_count(head: bytes) -> int:
+    return int.from_bytes(head[_STL_HEAD - 4 : _STL_HEAD], "little")
+
+
+def triangles(path: Path, /) -> int:
+    """Return the number of triangles of an STL file, of which VTK leaves out those without area.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    """
+    with path.open("rb") as file:
+        head = file.read(_STL_HEAD)
+        text = head + file.read() if _is_text_of_stl(head) else b""
+    return text.lower().count(b"endfacet") if text else _stl_count(head)
 
 
 #: Bytes of a record of LAS, and of one that stands after the points.
@@ -206,11 +225,21 @@ def _pnm(file: BinaryIO) -> str:
     """Compare a picture with its width and height."""
     head = file.read(_HEAD)
     gap = rb"(?:\s|#[^\n]*\n)+"
-    match = re.match(rb"P[1-6]" + gap + rb"(\d+)" + gap + rb"(\d+)\s", head)
+    match = re.match(rb"P([1-6])" + gap + rb"(\d+)" + gap + rb"(\d+)\s(?:\s*(\d+)\s)?", head)
     if not match:
         return "its width and height are missing"
+    kind, columns, rows, most = (int(word or 0) for word in match.groups())
+    if kind in _CHANNELS and most:
+        width = _CHANNELS[kind] * (1 if most < 256 else 2)
+        end = match.end() + columns * rows * width
+        file_parts.warn_of_more(Path(file.name), file.seek(0, 2) - end, "bytes")
+        return file_parts.missing_bytes(file, end)
     # A bit is the least for each pixel.
-    return file_parts.missing_bytes(file, int(match[1]) * int(match[2]) // 8)
+    return file_parts.missing_bytes(file, columns * rows // 8)
+
+
+#: Numbers of a pixel of binary pictures in gray and in colours.
+_CHANNELS = {5: 1, 6: 3}
 
 
 def _fields(lines: Sequence[bytes], between: str) -> dict[str, str]:
@@ -219,7 +248,9 @@ def _fields(lines: Sequence[bytes], between: str) -> dict[str, str]:
 
 
 def _nrrd(file: BinaryIO) -> str:
-    head, blank, _ = file.read(1 << 16).replace(b"\r\n", b"\n").partition(b"\n\n")
+    begin = file.read(1 << 16)
+    blank = re.search(rb"\r?\n\r?\n", begin)
+    head = begin[: blank.start() if blank else None].replace(b"\r\n", b"\n")
     lines = [line for line in head.split(b"\n") if not line.startswith(b"#") and b":=" not in line]
     fields = _fields(lines, ": ")
     if not all(b": " in line for line in lines[1:] if line):
@@ -244,7 +275,9 @@ def _nrrd(file: BinaryIO) -> str:
         _check.warn(
             f"file: '{file.name}': VTK reads its first axis of {sizes[0]} numbers as components"
         )
-    return _data(file, sizes, fields["type"], other, is_raw)
+    start = 0 if other or blank is None else blank.end()
+    skips = "byte skip" in fields or "line skip" in fields
+    return _data(file, sizes, fields["type"], other, is_raw, None if skips else start)
 
 
 #: Most rows of the first axis of an image of NRRD that VTK takes for components.
@@ -265,11 +298,23 @@ def _meta(file: BinaryIO) -> str:
     other = fields["ElementDataFile"]
     other = "" if other.lower() == "local" else other
     sizes.append(int(fields.get("ElementNumberOfChannels", "1")))
-    return _data(file, sizes, fields["ElementType"], other, is_raw)
+    start = 0 if other else sum(len(line) + 1 for line in lines[: last[0] + 1])
+    skips = "HeaderSize" in fields
+    return _data(file, sizes, fields["ElementType"], other, is_raw, None if skips else start)
 
 
-def _data(file: BinaryIO, sizes: Sequence[int], kind: str, other: str, is_raw: bool) -> str:
-    """Compare the sizes of an image with those of its data, in this file or another beside it."""
+def _data(
+    file: BinaryIO,
+    sizes: Sequence[int],
+    kind: str,
+    other: str,
+    is_raw: bool,
+    start: int | None,
+) -> str:
+    """Compare the sizes of an image with those of its data, in this file or another beside it.
+
+    The data begin at ``start``, unless that is None.
+    """
     if min(sizes) < 1:
         return f"its sizes are {sizes}"
     width = next((count for word, count in file_parts.BYTES.items() if word in kind.lower()), 1)
@@ -278,13 +323,16 @@ def _data(file: BinaryIO, sizes: Sequence[int], kind: str, other: str, is_raw: b
         # A zip makes data at most 1032 times smaller.
         least //= 1032
     # A name may be a pattern of several, or a list of them.
-    if not other or "%" in other or other.startswith("LIST"):
-        return file_parts.missing_bytes(file, 0 if other else least)
-    path = Path(file.name).parent / other
+    if "%" in other or other.startswith("LIST"):
+        return ""
+    path = Path(file.name).parent / other if other else Path(file.name)
     if not path.is_file():
         return f"its data in '{other}' are missing"
+    end = least + (start or 0)
+    if is_raw and start is not None:
+        file_parts.warn_of_more(path, path.stat().st_size - end, "bytes")
     with path.open("rb") as data:
-        return file_parts.missing_bytes(data, least)
+        return file_parts.missing_bytes(data, end)
 
 
 #: Corners of a cell of Tecplot by its name.
@@ -322,7 +370,7 @@ def _tecplot(file: BinaryIO) -> str:
 
 _IJK = (b"I", b"J", b"K")
 #: Words at the begin of lines of OBJ, and what they are, by their place in the corner of a face.
-_CORNERS_OF_OBJ = ((b"v", "point"), (b"vt", "texture coordinate"), (b"vn", "normal"))
+_CORNERS_OF_OBJ = ((0, b"v", "point"), (2, b"vn", "normal"))
 
 
 def _mdpa(file: BinaryIO) -> str:
@@ -381,13 +429,13 @@ def _obj(file: BinaryIO) -> str:
     if odd := next((word for word in words if b"x" in word.lower()), b""):
         return f"a face has the corner {odd.decode('latin-1')!a}"
     corners = [word.split(b"/") for word in words if b"/" in word]
-    for i, (key, name) in enumerate(_CORNERS_OF_OBJ):
+    for i, key, name in _CORNERS_OF_OBJ:
         # At least as many as there are: words may end so, too.
         count = text.count(key + b" ") + text.count(key + b"\t")
         numbers = (
             int(corner[i]) for corner in corners if corner[i : i + 1] and corner[i].isdigit()
         )
-        # Where a file has no texture coordinates or normals, they are left out.
+        # Where a file has no normals, or too few texture coordinates, they are left out.
         if count < (most := max(numbers, default=0)) and (count or name == "point"):
             return f"a face has the {name} {most} of {count}"
     return ""

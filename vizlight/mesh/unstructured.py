@@ -23,6 +23,10 @@ __all__ = ["Topology", "surface", "tables", "topology", "with_nodes"]
 
 #: Numbers of nodes of a face that a table of a file without names may have.
 _CORNERS = range(3, 17)
+#: Names of dimensions of the corners of a face.
+_OF_CORNERS = re.compile(
+    r"three|four|max_?\w*|\w*(vert|corner|per_?(face|cell|el))\w*", re.IGNORECASE
+)
 #: Names of tables of the nodes of faces, among others of such files.
 _TABLES = re.compile(
     r"(.*[_\W])?(ele(m|ms|ments?)?|tri(s|angles?)?|quads?|polygons?|faces?|cells?|nv|ien|ikle\w*"
@@ -133,8 +137,13 @@ def _of_ugrid(
 
 
 def _of_faces(file: Foreign, dims: list[str]) -> str:
-    """Return the dimension of the faces of a table: the first, unless the second is too long."""
+    """Return the dimension of the faces of a table: the first, unless that is of the corners.
+
+    The name tells where a mesh has as few faces as a face may have corners.
+    """
     first, second = dims
+    if file.sizes[first] in _CORNERS and _OF_CORNERS.fullmatch(first):
+        return second
     return first if file.sizes[second] in _CORNERS else second
 
 

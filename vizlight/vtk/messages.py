@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import re
+import struct
 import sys
 import threading
 from typing import TYPE_CHECKING
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign
 
-__all__ = ["captured_errors", "first_line"]
+__all__ = ["captured_errors", "first_line", "reason"]
 
 #: Where VTK says that an error or a warning arose, which stands before what it says.
 _ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
@@ -34,6 +35,35 @@ def first_line(error: Exception | str) -> str:
     error : Exception or str
     """
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
+
+
+#: Errors by which readers stop where they do not check what they follow: their words are of code.
+_OF_CODE = (
+    ArithmeticError, AssertionError, AttributeError, LookupError, RecursionError, TypeError,
+    struct.error,
+)  # fmt: skip
+
+
+def reason(error: BaseException) -> str:
+    """Return why a reader refuses a file, in words.
+
+    Parameters
+    ----------
+    error : BaseException
+        Error of the reader.
+    """
+    text = first_line(str(error)) if str(error).strip() else ""
+    kind = type(error).__name__
+    if isinstance(error, UnicodeDecodeError):
+        byte = error.object[error.start]
+        return f"a text in it has the byte 0x{byte:02x}, which is not of {error.encoding.upper()}"
+    if isinstance(error, MemoryError):
+        return "it asks for more memory than there is"
+    if isinstance(error, _OF_CODE) or not text:
+        return f"its parts do not fit together, by {kind}{text and f': {text}'}"
+    if error.__cause__ is not None and "See previous exception" in text:  # of rasterio
+        return reason(error.__cause__)
+    return (isinstance(error, OSError) and error.strerror) or text
 
 
 class _Messages:
