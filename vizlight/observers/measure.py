@@ -83,6 +83,8 @@ STROKES = 8
 #: normals (of the eye's direction as the answer, sin^2), share of a bar, share of the ranks.
 TOLERANCE = {"direction": 15.0, "heading": 15.0, "shape": 20.0, "value": 0.1, "rank": 0.15}
 GUESSED = {"direction": 1 / 6, "heading": 1 / 6, "shape": 0.117, "value": 0.2, "rank": 0.3}
+#: Figures of the questions that are answered by matched colours.
+MATCHED = {"direction": Direction, "heading": Heading, "shape": Shape, "value": Value}
 
 
 @dataclass(frozen=True)
@@ -466,7 +468,7 @@ class _PictureReader:
         unit = np.concatenate([p.unit for p in groups])
         if self.scale is None and np.isfinite(lengths).any():
             self.scale = _scale(question, lengths, unit, right, guessed)
-        chance = TURN / 2 if question != "value" else 0.25
+        chance = MATCHED[question].chance
         unread = bits < FLOOR or float(np.median(error)) > NEAR * chance
         return {
             "bits": bits,
@@ -582,7 +584,7 @@ class _PictureReader:
         lengths = np.concatenate([p.structure(_normal) for p in groups])
         common = self._common("shape", groups, readings, lengths)
         error = _errors(readings)
-        median = TURN / 2 if common["reason"] else float(np.median(error))
+        median = Shape.chance if common["reason"] else float(np.median(error))
         return Shape(median=median, **common)
 
     def value(self) -> Value | None:
@@ -624,7 +626,7 @@ class _PictureReader:
         common = self._common("value", groups, readings, lengths)
         error = _errors(readings)
         if common["reason"]:
-            return Value(median=0.25, p95=0.475, largest=0.5, **common)
+            return Value(median=Value.chance, p95=0.475, largest=0.5, **common)
         p95, largest = float(np.quantile(error, 0.95)), float(error.max())
         return Value(median=float(np.median(error)), p95=p95, largest=largest, **common)
 
@@ -685,7 +687,7 @@ def _kept(groups: list[SeenPlaces], rule: Callable[[SeenPlaces], Bools]) -> list
 def _angles(readings: list[Reading], common: Keywords) -> Keywords:
     """Return the share of errors of 10 degrees at most, and their median."""
     if common["reason"]:
-        return {"within_10": 1 / 9, "median": TURN / 2}
+        return {"within_10": 1 / 9, "median": Direction.chance}
     error = _errors(readings)
     return {"within_10": float((error <= 10).mean()), "median": float(np.median(error))}
 
