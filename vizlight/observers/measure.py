@@ -17,6 +17,7 @@ from vizlight.observers.eye import Eye, means
 from vizlight.observers.figures import (
     FLOOR,
     Direction,
+    Figure,
     Heading,
     Legibility,
     Order,
@@ -51,7 +52,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Indices, Keywords, Vector
     from vizlight.observers.eye import SeenPicture
-    from vizlight.observers.figures import Figure
     from vizlight.observers.lines import Glyphs, Segments
     from vizlight.observers.readers import Colors, Reading
     from vizlight.observers.samples import Sample, SeenMesh
@@ -84,7 +84,12 @@ STROKES = 8
 TOLERANCE = {"direction": 15.0, "heading": 15.0, "shape": 20.0, "value": 0.1, "rank": 0.15}
 GUESSED = {"direction": 1 / 6, "heading": 1 / 6, "shape": 0.117, "value": 0.2, "rank": 0.3}
 #: Figures of the questions that are answered by matched colours.
-MATCHED = {"direction": Direction, "heading": Heading, "shape": Shape, "value": Value}
+MATCHED: dict[str, type[Figure]] = {
+    "direction": Direction,
+    "heading": Heading,
+    "shape": Shape,
+    "value": Value,
+}
 
 
 @dataclass(frozen=True)

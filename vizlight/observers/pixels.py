@@ -19,7 +19,7 @@ from vizlight.draw.cameras import footprint
 from vizlight.draw.live import in_view
 from vizlight.draw.strokes import lay_on_surfaces
 from vizlight.model.kernels import unit_rows
-from vizlight.vtk.arrays import GridPoints
+from vizlight.vtk.arrays import MadePoints
 from vizlight.vtk.cells import as_numpy, as_vtk
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ class Cells(NamedTuple):
 
 def rows_of(source: ArraySource, ids: Indices) -> Array:
     """Return rows of points or of an array by their numbers."""
-    rows: Array = np.asarray(source.at(ids) if isinstance(source, GridPoints) else source[:][ids])
+    rows: Array = np.asarray(source.at(ids) if isinstance(source, MadePoints) else source[:][ids])
     return rows
 
 

@@ -258,10 +258,15 @@ class DrawnSegments(DrawnCells):
         return cls(mesh.GetLines()) if _are_of(mesh.GetLines(), SEGMENT).all() else None
 
     @property
+    def are_single(self) -> bool:
+        """Whether all lines are single segments."""
+        return self._size == SEGMENT
+
+    @property
     def may_join(self) -> bool:
         """Whether some lines are single segments, which may be parts of longer lines."""
         if self._size:
-            return self._size == SEGMENT
+            return self.are_single
         blocks = _pool.blocks(self.polygons, BLOCK)
         sizes = (np.diff(self._offsets[block.start : block.stop + 1]) for block in blocks)
         return any((each == SEGMENT).any() for each in sizes)

@@ -48,7 +48,7 @@ NUMBERS = "vizlight numbers"
 #: Types of cells whose faces are flat or ruled: up to 20, convex point sets, polyhedra.
 _LAST_LINEAR, _OTHER_LINEAR = 20, {41, 42}
 #: Dimension of cells that fill space.
-_SOLID = 3
+SOLID = 3
 #: Types that stand for vertices, lines, polygons and strips.
 _KINDS = (2, 4, 7, 6)
 
@@ -141,7 +141,7 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
 
 def _has_walls(mesh: Dataset) -> bool:
     """Return whether a dataset has flat polygons beside solid cells."""
-    return {_SOLID - 1, _SOLID}.issubset(map(_dimension, cell_types(mesh)))
+    return {SOLID - 1, SOLID}.issubset(map(_dimension, cell_types(mesh)))
 
 
 def _join_walls(surface: vtkPolyData, grid: Dataset) -> None:
@@ -152,7 +152,7 @@ def _join_walls(surface: vtkPolyData, grid: Dataset) -> None:
     ids, offsets = connectivity(surface.GetPolys())
     ids, sizes, doubled = ids.copy(), np.diff(offsets), []
     kinds = np.array([grid.GetCellType(cell) for cell in cells.tolist()])
-    solid = np.isin(kinds, [kind for kind in np.unique(kinds) if _dimension(kind) == _SOLID])
+    solid = np.isin(kinds, [kind for kind in np.unique(kinds) if _dimension(kind) == SOLID])
     for size in np.unique(sizes).tolist():
         polygons = np.flatnonzero(sizes == size)
         corners = offsets[polygons][:, np.newaxis] + np.arange(size)
@@ -186,7 +186,7 @@ def _outward(surface: vtkPolyData, grid: vtkUnstructuredGrid, cells: Indices) ->
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c - 3 * middles) < 0
     # One by one, since the array of all types has another name in each version of VTK.
     turned = np.unique(cells[inward])
-    solid = {kind for kind in cell_types(grid) if _dimension(kind) == _SOLID}
+    solid = {kind for kind in cell_types(grid) if _dimension(kind) == SOLID}
     fills = [grid.GetCellType(cell) in solid for cell in turned.tolist()]
     inward &= np.isin(cells, turned[np.array(fills, dtype=np.bool_)])
     # The corners of a polygon from its last to its first, or as they are.
