@@ -145,41 +145,45 @@ def near_points(points: ArraySource, cells: Indices, light: LightOptions) -> Nea
     A normal is that of the plane through the nearest points, of which those at one distance have
     no order.
     """
-    origin = neighbours(points, rows_of(points, cells[:, 0]).astype(np.float64), NEIGHBOURS)
+    origin = neighbours(points, cells[:, 0], NEIGHBOURS)
     return Near(pv.PolyData(rows_of(points, origin)), light, np.searchsorted(origin, cells), origin)
 
 
-def neighbours(points: ArraySource, places: Array, count: int) -> Indices:
-    """Return the numbers of all points that are among the nearest of some places.
+def neighbours(points: ArraySource, ids: Indices, count: int) -> Indices:
+    """Return the numbers of all points that are among the nearest of some of them.
 
     Parameters
     ----------
     points : ArraySource, shape (N, 3)
         Points.
-    places : ndarray, shape (M, 3)
-        Places.
+    ids : ndarray of int, shape (M,)
+        Numbers of some points.
     count : int
-        Number of points that are nearest to each place.
+        Number of points that are nearest to each.
     """
-    far = np.full((len(places), count), np.inf)
+    places = rows_of(points, ids).astype(np.float64)
+    far = np.full((len(ids), count), np.inf)
     nearest = np.zeros(far.shape, dtype=np.intp)
-    for block in _pool.blocks(points.shape[0], 4 * BLOCK):
+    blocks = _pool.blocks(points.shape[0], 4 * BLOCK)
+    # Those of its own block tell how far away the nearest of another may be.
+    for block, is_own in [(block, own) for own in (True, False) for block in blocks]:
+        chosen = np.flatnonzero(((ids >= block.start) & (ids < block.stop)) == is_own)
         rows = np.asarray(points[block], dtype=np.float64)
-        own = np.flatnonzero(finite_points(rows))
-        if not len(own):
+        finite = np.flatnonzero(finite_points(rows))
+        if not len(finite) or not len(chosen):
             continue
-        rows = rows[own]
-        outside = np.maximum(np.maximum(rows.min(axis=0) - places, places - rows.max(axis=0)), 0.0)
-        close = np.flatnonzero(np.linalg.norm(outside, axis=1) <= far[:, -1])
-        if not len(close):
-            continue
-        most = float(far[close, -1].max())
-        more, at = cKDTree(rows).query(places[close], count, distance_upper_bound=most)
-        both = np.hstack([far[close], more])
-        order = np.argsort(both, axis=1, kind="stable")[:, :count]
-        far[close] = np.take_along_axis(both, order, axis=1)
-        own = np.append(own + block.start, 0)
-        nearest[close] = np.take_along_axis(np.hstack([nearest[close], own[at]]), order, axis=1)
+        rows, at = rows[finite], places[chosen]
+        outside = np.maximum(np.maximum(rows.min(axis=0) - at, at - rows.max(axis=0)), 0.0)
+        chosen = chosen[np.linalg.norm(outside, axis=1) <= far[chosen, -1]]
+        tree = cKDTree(rows, balanced_tree=False, compact_nodes=False)
+        more, number = tree.query(
+            places[chosen], count, distance_upper_bound=far[chosen, -1].max(initial=0.0)
+        )
+        more, number = np.hstack([far[chosen], more]), np.append(finite + block.start, 0)[number]
+        number = np.hstack([nearest[chosen], number])
+        order = np.argsort(more, axis=1, kind="stable")[:, :count]
+        far[chosen] = np.take_along_axis(more, order, axis=1)
+        nearest[chosen] = np.take_along_axis(number, order, axis=1)
     return np.unique(nearest[np.isfinite(far)])
 
 

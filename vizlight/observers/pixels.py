@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices, Slice
     from vizlight.shading.display import Bytes
     from vizlight.shading.inputs import ArraySource
-    from vizlight.vtk.drawn import DrawnCells
+    from vizlight.vtk.drawn import DrawnCells, DrawnPoints
 
 #: Number of cells that are drawn at once, so that memory goes by pixels.
 BLOCK = 1 << 19
@@ -57,7 +57,7 @@ class Cells(NamedTuple):
     """
 
     points: ArraySource
-    corners: Indices | DrawnCells
+    corners: Indices | DrawnCells | DrawnPoints
     width: float
     diameter: float | None = None
 

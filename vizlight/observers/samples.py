@@ -27,7 +27,7 @@ from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.verify.between import Places, interpolated, mean_spaces
 from vizlight.vtk import hull
 from vizlight.vtk.arrays import MadePoints, is_of_cells, points_of
-from vizlight.vtk.drawn import DrawnCells, DrawnSegments, DrawnTriangles
+from vizlight.vtk.drawn import DrawnCells, DrawnPoints, DrawnSegments, DrawnTriangles
 from vizlight.vtk.hull import SOLID
 from vizlight.vtk.normals import is_scan
 
@@ -242,7 +242,7 @@ class SeenMesh:
 
     kind: Kind
     mesh: pv.DataSet
-    cells: Indices | DrawnCells
+    cells: Indices | DrawnCells | DrawnPoints
     inputs: ShadingInputs
     options: ShadingOptions
     scene: Scene
@@ -358,7 +358,7 @@ def is_solid(mesh: pv.DataSet, light: LightOptions) -> bool:
 
 
 def _made_near(
-    mesh: pv.DataSet, cells: Indices | DrawnCells, light: LightOptions, *, lit: bool
+    mesh: pv.DataSet, cells: Indices | DrawnCells | DrawnPoints, light: LightOptions, *, lit: bool
 ) -> bool:
     """Return whether tangents and normals of a mesh are made near the places that are read."""
     if isinstance(cells, DrawnTriangles):
@@ -429,10 +429,11 @@ def part_on(
     # A key has no depth by which a cue could fade it.
     scene = scene.replace(depth_cue=None)
     drawn = DrawnTriangles.of(mesh) or DrawnSegments.of(mesh)
+    cells: Indices | DrawnCells | DrawnPoints
     cells = subdivision.simplices(mesh) if drawn is None else drawn
     kind: Kind = "surface" if cells.shape[1] == 3 else "line"
     if not len(cells):
-        kind, cells = "point", np.arange(mesh.n_points)[:, np.newaxis]
+        kind, cells = "point", DrawnPoints(mesh.n_points)
     # Shares of light that reach a place are the picture's to show, and not of the key.
     light = dataclasses.replace(options, occlusion=None, bundle=False)
     lit = more.get("lit", True)
@@ -519,7 +520,7 @@ def of_glyphs(mesh: pv.DataSet, options: LightOptions) -> LightOptions:
     return options
 
 
-def _glyphs(mesh: pv.DataSet, cells: Indices | DrawnCells) -> Indices:
+def _glyphs(mesh: pv.DataSet, cells: Indices | DrawnCells | DrawnPoints) -> Indices:
     """Return the numbers of the glyphs that cells belong to.
 
     VTK writes the points of one glyph after those of another, as many of each. In another mesh,

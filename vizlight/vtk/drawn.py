@@ -39,6 +39,27 @@ BLOCK = 1 << 16
 TABLE = 1 << 20
 
 
+class DrawnPoints:
+    """Numbers of all points of a mesh, which are cells of one corner.
+
+    Parameters
+    ----------
+    count : int
+        Number of points.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.shape = (count, 1)
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, rows: Rows, /) -> Indices:
+        """Return some of the points, shape (M, 1)."""
+        numbers = np.arange(*rows.indices(len(self))) if isinstance(rows, slice) else rows
+        return np.asarray(numbers)[:, np.newaxis]
+
+
 class DrawnCells:
     """Parts of polygons or of lines, all with as many corners, one after the other.
 
