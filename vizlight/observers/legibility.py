@@ -27,7 +27,7 @@ from vizlight.scene.presets import required_scene
 from vizlight.scene.view import is_camera
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import is_of_cells
-from vizlight.vtk.hull import outer_surface
+from vizlight.vtk.hull import outer_points
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -278,7 +278,7 @@ def _split(mesh: pv.DataSet, options: LightOptions, scalars: str | None) -> pv.D
     by_name &= scalars is None or not is_of_cells(mesh, scalars)
     many = isinstance(mesh, pv.UnstructuredGrid) and mesh.n_cells > WHOLE
     if many and by_name and is_solid(mesh, options):
-        mesh = pv.wrap(outer_surface(mesh)[0])
+        mesh = pv.wrap(outer_points(mesh)[0])
     return mesh if is_large(mesh) else with_sharp_edges(mesh, options)
 
 

@@ -458,7 +458,7 @@ def _on_surface(
     mesh: pv.DataSet, options: LightOptions, values: Raw | None
 ) -> tuple[pv.DataSet, LightOptions, Raw | None]:
     """Return the outer surface of a mesh with the rows of its arrays, and of what is given."""
-    surface, origin = hull.outer_surface(mesh)
+    surface, origin = hull.outer_points(mesh)
     given: Keywords = {
         name: np.asarray(rows)[origin]
         for name in ("tangents", "normals")
