@@ -222,7 +222,7 @@ class Scale:
         Question about the data.
     pixels : float or None
         Least structure in pixels at which half of the answers are right beyond chance; None where
-        none is.
+        none is, and where the question is unreadable.
     length : float or None
         The same in the unit of the mesh.
     median : float

@@ -471,10 +471,11 @@ class _PictureReader:
         other = np.concatenate([reading.other_error for reading in readings])
         guessed = max(GUESSED[question], float((other <= TOLERANCE[question]).mean()))
         unit = np.concatenate([p.unit for p in groups])
-        if self.scale is None and np.isfinite(lengths).any():
-            self.scale = _scale(question, lengths, unit, right, guessed)
         chance = MATCHED[question].chance
         unread = bits < FLOOR or float(np.median(error)) > NEAR * chance
+        if self.scale is None and np.isfinite(lengths).any():
+            # Where a question is unreadable, no structure is read but by chance.
+            self.scale = _scale(question, lengths, unit, right & (not unread), guessed)
         return {
             "bits": bits,
             "readable": 0.0 if unread else _beyond_chance(right, guessed),

@@ -244,7 +244,7 @@ def _take_rows(part: vtkPolyData, whole: Dataset, rows: Indices) -> None:
 
 
 #: Number of cells of a grid whose surface is found at once.
-BLOCK = 1 << 19
+BLOCK = 1 << 20
 
 
 def outer_points(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
