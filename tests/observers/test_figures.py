@@ -4,7 +4,18 @@ import json
 
 import pytest
 
-from vizlight.observers.figures import Direction, Legibility, Order, Scale, Value
+from vizlight.observers.figures import (
+    Direction,
+    Heading,
+    Legibility,
+    Order,
+    Scale,
+    Sense,
+    Shape,
+    Slope,
+    Speed,
+    Value,
+)
 
 HOW = {"size": (200, 100), "size_mm": 20.0, "distance_mm": 400.0, "toward_eye": (0.0, 0.0, 1.0)}
 HOW |= {"pixels": 5000, "noise": 2.3, "seed": 7}
@@ -23,12 +34,16 @@ def test_figures_are_rows_with_their_chance():
     ]
     assert not READ.unreadable
     order = Order(bits=0.5, readable=0.25, samples=8, told=0.5, wrongly=0.25)
-    assert order.rows()[:2] == [("told", "50%", "0%"), ("told wrongly", "25%", "0%")]
+    assert order.rows()[:2] == [("told", "50%", "50%"), ("told wrongly", "25%", "50%")]
 
 
-def test_what_is_unreadable_is_one_row_and_a_reason():
+def test_what_is_unreadable_is_chance_and_has_a_reason():
     assert UNREAD.unreadable
-    assert UNREAD.rows() == [("unreadable", "0.12 bits", "0")]
+    rows = [(figure, chance) for _, figure, chance in UNREAD.rows()]
+    assert rows == [("chance", x) for x in ("25%", "48%", "50%")] + [
+        ("0.12 bits", "0"),
+        ("0%", "0%"),
+    ]
     found = Legibility(direction=READ, value=UNREAD, **HOW)
     assert found.unreadable == {"value": "too fine"}
     lines = str(found).splitlines()
@@ -36,10 +51,28 @@ def test_what_is_unreadable_is_one_row_and_a_reason():
     assert [line.split()[0] for line in lines[1:6]] == [
         "direction", "median", "information", "readable", "value",
     ]  # fmt: skip
-    assert lines[6] == "value is unreadable: too fine"
-    assert lines[7].startswith("5000 pixels of 200 x 100, 20 mm wide, seen from 400 mm; noise")
-    assert lines[7].endswith("2.3 in CIELAB, seed 7")
-    assert json.loads(json.dumps(found.to_dict()))["direction"]["median"] == 12.5
+    assert lines[5].split()[-2:] == ["chance", "25%"]
+    assert lines[10] == "value is unreadable: too fine"
+    assert lines[11].startswith("5000 pixels of 200 x 100, 20 mm wide, seen from 400 mm; noise")
+    assert lines[11].endswith("2.3 in CIELAB, seed 7")
+    record = json.loads(json.dumps(found.to_dict()))
+    assert (record["direction"]["median"], record["direction"]["chance"]) == (12.5, 45)
+
+
+def test_each_figure_has_its_chance_and_is_printed_beside_it():
+    kinds = Direction, Heading, Slope, Shape, Value, Speed, Order, Sense
+    stated = [kind.ROWS[-1 if "median" not in kind.ROWS[0] else 0][3] for kind in kinds]
+    assert [f"{kind.chance:g}" for kind in kinds] == [
+        "45",
+        "45",
+        "0",
+        "45",
+        "0.25",
+        "0",
+        "0.5",
+        "0.5",
+    ]
+    assert stated == ["45", "45", "0", "45", "25%", "0", "50%", "50%"]
 
 
 def test_figures_are_left_out_with_their_scale():

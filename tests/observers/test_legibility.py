@@ -13,7 +13,7 @@ from sheets import sheet
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, presets
 from vizlight.draw.cameras import camera_on
-from vizlight.observers.whole import moved
+from vizlight.observers.samples import moved
 from vizlight.shading.options import LightOptions
 
 pytestmark = pytest.mark.opengl

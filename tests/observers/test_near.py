@@ -184,6 +184,103 @@ def test_tangents_that_are_given_or_joined_are_those_of_the_whole(how, monkeypat
     assert samples.part_on(mesh, SCENE, LightOptions(**how)).inputs.tangents is not None
 
 
+def scan():
+    """Return points around a ball, no two pairs of which are equally far apart."""
+    ball = bare(pv.Sphere(theta_resolution=40, phi_resolution=30))
+    noise = np.random.default_rng(0).normal(0, 3e-3, ball.points.shape)
+    return pv.PolyData(np.asarray(ball.points) + noise)
+
+
+@pytest.mark.parametrize("block", [37, 1 << 16])
+def test_neighbours_are_the_nearest_of_all_points(block, monkeypatch):
+    monkeypatch.setattr(near_cells, "BLOCK", block)
+    points = np.random.default_rng(2).normal(size=(900, 3))
+    points[[5, 700], 1] = np.nan, np.inf
+    ids = np.arange(0, 900, 23)
+    far = np.linalg.norm(points[:, None] - points[ids], axis=2)
+    expected = np.unique(np.argsort(np.where(np.isfinite(far), far, np.inf), axis=0)[:7])
+    np.testing.assert_array_equal(near_cells.neighbours(points, ids, 7), expected)
+    # Fewer points than neighbours are all of them.
+    assert len(near_cells.neighbours(points[:6], ids[:1], 7)) == 5
+
+
+def test_normals_of_points_of_a_scan_are_those_of_the_whole(monkeypatch):
+    mesh, chosen = scan(), np.array([8, 900, 3])
+    mesh["v"] = np.arange(float(mesh.n_points))
+    whole = samples.part_on(mesh, SCENE, LightOptions(), values=mesh["v"])
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    part = samples.part_on(mesh, SCENE, LightOptions(), values=mesh["v"])
+    assert part.inputs.normals is None
+    found = part.near(chosen)
+    assert found.mesh.n_points < 40
+    rows = found.cells[:, 0]
+    np.testing.assert_array_equal(found.values[rows], chosen)
+    np.testing.assert_array_equal(found.mesh.points[rows], mesh.points[chosen])
+    np.testing.assert_allclose(
+        found.inputs.normals[:][rows], whole.inputs.normals[:][chosen], atol=1e-6
+    )
+    assert samples.part_on(mesh, SCENE, LightOptions(), lit=False).inputs.normals is None
+
+
+def test_tangents_of_single_segments_are_those_of_the_joined_lines(monkeypatch):
+    ball = bare(pv.Sphere())
+    ball["z"] = np.sin(4 * ball.points[:, 0]) + np.cos(3 * ball.points[:, 1])
+    mesh = bare(ball.contour(6, scalars="z"))
+    # Points that repeat, as where an isoline goes through a point of its surface.
+    ids = mesh.lines.reshape(-1, 3)[:, 1:]
+    mesh.points[ids[40, 1]] = mesh.points[ids[40, 0]]
+    chosen = np.array([4, 39, 41, 200])
+    whole = samples.part_on(mesh, SCENE, LightOptions())
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    part = samples.part_on(mesh, SCENE, LightOptions())
+    assert part.inputs.tangents is None
+    found = part.near(chosen)
+    rows, expected = (
+        p.inputs.tangents[:][p.cells[i]] for p, i in ((found, slice(None)), (whole, chosen))
+    )
+    sign = np.sign(np.einsum("ijk,ijk->i", rows, expected))[:, np.newaxis, np.newaxis]
+    np.testing.assert_array_equal(sign * rows, expected)
+    assert found.mesh.n_points == mesh.n_points
+
+
+MATRIX = np.array([[0.8, -0.6, 0, 3], [0.6, 0.8, 0, -1], [0, 0.3, 2, 0], [0, 0, 0, 1.0]])
+
+
+@pytest.mark.parametrize("make", [flow, scan, lambda: curls(20, 3, 30)])
+def test_a_large_mesh_is_moved_near_the_places_that_are_read(make, monkeypatch):
+    mesh, chosen = make(), np.array([3, 20])
+    light = LightOptions(tangents="V" if "V" in mesh.array_names else None)
+    whole = samples.part_on(mesh, SCENE, light, matrix=MATRIX)
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    part = samples.part_on(mesh, SCENE, light, matrix=MATRIX)
+    assert part.mesh is mesh
+    expected = np.asarray(whole.drawn.points[:])
+    np.testing.assert_allclose(part.drawn.points[:], expected, atol=1e-6)
+    found, same = part.near(chosen), whole.near(chosen)
+    for name in ("points", "tangents", "normals"):
+        rows, others = (getattr(p.inputs, name) for p in (found, same))
+        assert (rows is None) == (others is None)
+        if rows is not None:
+            near_rows, far_rows = rows[:][found.cells], others[:][same.cells]
+            np.testing.assert_allclose(np.abs(near_rows), np.abs(far_rows), atol=2e-6)
+
+
+def test_solid_cells_are_read_on_their_surface_with_the_rows_of_their_arrays():
+    image = pv.ImageData(dimensions=(5, 4, 6))
+    grid = image.cast_to_unstructured_grid()
+    vectors = np.random.default_rng(1).normal(size=(grid.n_points, 3))
+    values = np.arange(float(grid.n_points))
+    for mesh in (image, grid):
+        part = samples.part_on(mesh, SCENE, LightOptions(tangents=vectors), values=values)
+        rows = part.values.astype(int)
+        assert part.mesh.n_points == 120 - 3 * 2 * 4
+        np.testing.assert_array_equal(part.mesh.points, grid.points[rows])
+        np.testing.assert_array_equal(part.inputs.tangents[:], vectors[rows])
+        assert part.cells.shape == (2 * 2 * (4 * 3 + 3 * 5 + 4 * 5), 3)
+    grid.cell_data["W"] = np.ones((grid.n_cells, 3))
+    assert samples.part_on(grid, SCENE, LightOptions(tangents="W")).mesh is grid
+
+
 def test_options_that_do_not_fit_lines_are_refused_near_their_segments_too(monkeypatch):
     monkeypatch.setattr(samples, "WHOLE", 0)
     part = samples.part_on(curls(20, 30), SCENE, LightOptions(normals="V"), "block 2")

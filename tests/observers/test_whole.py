@@ -10,7 +10,8 @@ from vtkmodules.vtkRenderingLICOpenGL2 import vtkSurfaceLICMapper
 
 import vizlight
 from vizlight.draw.cameras import camera_on
-from vizlight.observers.whole import moved, read_picture, reading
+from vizlight.observers.samples import moved
+from vizlight.observers.whole import read_picture, reading
 from vizlight.shading.options import LightOptions
 
 pytestmark = pytest.mark.opengl

@@ -32,12 +32,16 @@ class Figure:
         Number of places.
     reason : str
         Why the question is unreadable, empty where it is not. The errors are then those of chance.
+    chance : float
+        What guessing gives: of angles and values the median error, of a magnitude the rank
+        correlation, of two sides the share that is told.
     """
 
     bits: float
     readable: float
     samples: int
     reason: str = ""
+    chance: float = 0.0
 
     #: Rows of the table: attribute, words, form, and what guessing gives.
     ROWS: ClassVar[tuple[tuple[str, str, str, str], ...]] = ()
@@ -48,17 +52,17 @@ class Figure:
         return bool(self.reason)
 
     def rows(self) -> list[tuple[str, str, str]]:
-        """Return words, figure and chance of each row of the table."""
-        if self.unreadable:
-            return [("unreadable", f"{self.bits:.2f} bits", "0")]
+        """Return words, figure and chance of each row of the table; ``chance`` if unreadable."""
         more = (
             ("bits", "information", "{:.2f} bits", "0"),
             ("readable", "readable share of the picture", "{:.0%}", "0%"),
         )
-        return [
-            (words, form.format(value), chance)
-            for name, words, form, chance in (*self.ROWS, *more)
-            if (value := getattr(self, name)) is not None
+        answers = [
+            (words, "chance" if self.unreadable else form.format(getattr(self, name)), chance)
+            for name, words, form, chance in self.ROWS
+        ]
+        return answers + [
+            (words, form.format(getattr(self, name)), chance) for name, words, form, chance in more
         ]
 
 
@@ -76,6 +80,7 @@ class Direction(Figure):
 
     within_10: float
     median: float
+    chance: float = 45.0
 
     ROWS = (
         ("within_10", "within 10 degrees", "{:.1%}", "11.1%"),
@@ -120,6 +125,7 @@ class Shape(Figure):
     """
 
     median: float
+    chance: float = 45.0
 
     ROWS = (("median", "median error of the normal", "{:.1f} degrees", "45"),)
 
@@ -138,6 +144,7 @@ class Value(Figure):
     median: float
     p95: float
     largest: float
+    chance: float = 0.25
 
     ROWS = (
         ("median", "median error, nearest colour of the bar", "{:.1%} of the range", "25%"),
@@ -172,15 +179,16 @@ class TwoSided(Figure):
     Attributes
     ----------
     told : float
-        Share of the places at which the answer is right.
+        Share of the places at which the answer is right; 0.5 by chance, as ``wrongly``.
     wrongly : float
         Share at which it is wrong.
     """
 
     told: float
     wrongly: float
+    chance: float = 0.5
 
-    ROWS = (("told", "told", "{:.0%}", "0%"), ("wrongly", "told wrongly", "{:.0%}", "0%"))
+    ROWS = (("told", "told", "{:.0%}", "50%"), ("wrongly", "told wrongly", "{:.0%}", "50%"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -214,7 +222,7 @@ class Scale:
         Question about the data.
     pixels : float or None
         Least structure in pixels at which half of the answers are right beyond chance; None where
-        none is.
+        none is, and where the question is unreadable.
     length : float or None
         The same in the unit of the mesh.
     median : float

@@ -20,12 +20,14 @@ from vizlight.mesh.polylines import backdrop
 from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.figures import Legibility
 from vizlight.observers.measure import measure
-from vizlight.observers.samples import camera_of, is_large, part_on
+from vizlight.observers.samples import WHOLE, camera_of, is_large, is_solid, part_on
 from vizlight.observers.whole import PRINT, read_picture, reading
 from vizlight.scene import Light, Scene, View
 from vizlight.scene.presets import required_scene
 from vizlight.scene.view import is_camera
 from vizlight.shading.options import LightOptions
+from vizlight.vtk.arrays import is_of_cells
+from vizlight.vtk.hull import outer_points
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -269,6 +271,17 @@ def _plotter(mesh: pv.DataSet | pv.MultiBlock, size: tuple[int, int]) -> pv.Plot
     return plotter
 
 
+def _split(mesh: pv.DataSet, options: LightOptions, scalars: str | None) -> pv.DataSet:
+    """Return a mesh with split sharp edges unless it is large; of many solid cells the surface."""
+    by_name = all(isinstance(x, str | None) for x in (options.tangents, options.normals))
+    # Means of cells are those of all around a point, inside too.
+    by_name &= scalars is None or not is_of_cells(mesh, scalars)
+    many = isinstance(mesh, pv.UnstructuredGrid) and mesh.n_cells > WHOLE
+    if many and by_name and is_solid(mesh, options):
+        mesh = pv.wrap(outer_points(mesh)[0])
+    return mesh if is_large(mesh) else with_sharp_edges(mesh, options)
+
+
 def _parts(
     mesh: pv.DataSet | pv.MultiBlock,
     key: Foreign,
@@ -298,10 +311,7 @@ def _parts(
     # Rows of values that are no array of the mesh do not fit points that are split.
     if lit and isinstance(scalars, str | None):
         # The edges of a large surface are looked for near the places that are read.
-        shown = [
-            (block if is_large(block) else with_sharp_edges(block, options), path)
-            for block, path in shown
-        ]
+        shown = [(_split(block, options, scalars), path) for block, path in shown]
     else:
         options = smooth
     values: list[Raw | None] = [None] * len(shown)

@@ -17,6 +17,7 @@ from vizlight.observers.eye import Eye, means
 from vizlight.observers.figures import (
     FLOOR,
     Direction,
+    Figure,
     Heading,
     Legibility,
     Order,
@@ -51,7 +52,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Indices, Keywords, Vector
     from vizlight.observers.eye import SeenPicture
-    from vizlight.observers.figures import Figure
     from vizlight.observers.lines import Glyphs, Segments
     from vizlight.observers.readers import Colors, Reading
     from vizlight.observers.samples import Sample, SeenMesh
@@ -83,6 +83,13 @@ STROKES = 8
 #: normals (of the eye's direction as the answer, sin^2), share of a bar, share of the ranks.
 TOLERANCE = {"direction": 15.0, "heading": 15.0, "shape": 20.0, "value": 0.1, "rank": 0.15}
 GUESSED = {"direction": 1 / 6, "heading": 1 / 6, "shape": 0.117, "value": 0.2, "rank": 0.3}
+#: Figures of the questions that are answered by matched colours.
+MATCHED: dict[str, type[Figure]] = {
+    "direction": Direction,
+    "heading": Heading,
+    "shape": Shape,
+    "value": Value,
+}
 
 
 @dataclass(frozen=True)
@@ -464,10 +471,11 @@ class _PictureReader:
         other = np.concatenate([reading.other_error for reading in readings])
         guessed = max(GUESSED[question], float((other <= TOLERANCE[question]).mean()))
         unit = np.concatenate([p.unit for p in groups])
-        if self.scale is None and np.isfinite(lengths).any():
-            self.scale = _scale(question, lengths, unit, right, guessed)
-        chance = TURN / 2 if question != "value" else 0.25
+        chance = MATCHED[question].chance
         unread = bits < FLOOR or float(np.median(error)) > NEAR * chance
+        if self.scale is None and np.isfinite(lengths).any():
+            # Where a question is unreadable, no structure is read but by chance.
+            self.scale = _scale(question, lengths, unit, right & (not unread), guessed)
         return {
             "bits": bits,
             "readable": 0.0 if unread else _beyond_chance(right, guessed),
@@ -582,7 +590,7 @@ class _PictureReader:
         lengths = np.concatenate([p.structure(_normal) for p in groups])
         common = self._common("shape", groups, readings, lengths)
         error = _errors(readings)
-        median = TURN / 2 if common["reason"] else float(np.median(error))
+        median = Shape.chance if common["reason"] else float(np.median(error))
         return Shape(median=median, **common)
 
     def value(self) -> Value | None:
@@ -624,7 +632,7 @@ class _PictureReader:
         common = self._common("value", groups, readings, lengths)
         error = _errors(readings)
         if common["reason"]:
-            return Value(median=0.25, p95=0.475, largest=0.5, **common)
+            return Value(median=Value.chance, p95=0.475, largest=0.5, **common)
         p95, largest = float(np.quantile(error, 0.95)), float(error.max())
         return Value(median=float(np.median(error)), p95=p95, largest=largest, **common)
 
@@ -685,7 +693,7 @@ def _kept(groups: list[SeenPlaces], rule: Callable[[SeenPlaces], Bools]) -> list
 def _angles(readings: list[Reading], common: Keywords) -> Keywords:
     """Return the share of errors of 10 degrees at most, and their median."""
     if common["reason"]:
-        return {"within_10": 1 / 9, "median": TURN / 2}
+        return {"within_10": 1 / 9, "median": Direction.chance}
     error = _errors(readings)
     return {"within_10": float((error <= 10).mean()), "median": float(np.median(error))}
 

@@ -1,4 +1,4 @@
-"""The surroundings of some triangles of a large surface, and of some segments of many lines."""
+"""The surroundings of some triangles of a large surface, of some segments, and of some points."""
 
 from __future__ import annotations
 
@@ -7,37 +7,44 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
+from scipy.spatial import cKDTree
 
+from vizlight import _pool
 from vizlight.draw.sources import with_sharp_edges
 from vizlight.mesh.blocks import cell_array
 from vizlight.observers.pixels import rows_of
 from vizlight.vtk.arrays import array_of, points_of
-from vizlight.vtk.cells import places, triangles
+from vizlight.vtk.cells import finite_points, places, triangles
 from vizlight.vtk.corners import all_slivers, joined
 from vizlight.vtk.drawn import BLOCK, DrawnTriangles
+from vizlight.vtk.normals import NEIGHBOURS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from vizlight._types import Array, Indices, Keywords
+    from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import LightOptions
     from vizlight.vtk.drawn import DrawnSegments
 
 #: Name of a temporary point array, chosen not to clash with a user's array.
 PLACE = "vizlight place"
+#: Number of segments on either side of one that tell its tangents, also where some have no length.
+RINGS = 4
 
 
 class Near(NamedTuple):
-    """Surroundings of some triangles.
+    """Surroundings of some triangles or points.
 
     Attributes
     ----------
     mesh : pyvista.PolyData
-        All polygons that have a point in common with the triangles, with the arrays of their light.
+        All polygons that have a point in common with the triangles, with the arrays of their light;
+        all points that tell the normals of points.
     light : LightOptions
         How it is lit.
-    corners : ndarray of int, shape (M, 3)
-        Points of the triangles in it.
+    corners : ndarray of int, shape (M, s)
+        Corners of the triangles, or the points, in it.
     origin : ndarray of int
         Point of the large mesh that each of its points is.
     """
@@ -109,14 +116,17 @@ def tangents_at(
     mesh : pyvista.DataSet
         Mesh.
     lines : DrawnSegments
-        Its segments; none may be joined with those of another line.
+        Its segments: all of lines of one, or none that may be joined with those of another line.
     points : ndarray of int, shape (M,)
         Rising numbers of points of lines.
     tangents_of : callable
         Function from a mesh of lines to the tangents at its points.
     """
     around, tangents = lines.around(points), np.zeros((len(points), 3))
-    group = np.cumsum(lines.sizes(around)) // BLOCK
+    for _ in range(RINGS if lines.are_single else 0):
+        around = lines.around(np.unique(lines.corners(around)[0]))
+    # Segments that may be joined stay together.
+    group = np.cumsum(lines.sizes(around)) // BLOCK * (not lines.are_single)
     for some in np.split(around, np.flatnonzero(np.diff(group)) + 1):
         ids, ends = lines.corners(some)
         origin, ids = np.unique(ids, return_inverse=True)
@@ -127,6 +137,54 @@ def tangents_at(
         chosen = np.isin(origin, points)
         tangents[np.searchsorted(points, origin[chosen])] = tangents_of(part)[chosen]
     return tangents
+
+
+def near_points(points: ArraySource, cells: Indices, light: LightOptions) -> Near:
+    """Return some points of a scan, shape (M, 1), with all that tell their normals.
+
+    A normal is that of the plane through the nearest points, of which those at one distance have
+    no order.
+    """
+    origin = neighbours(points, cells[:, 0], NEIGHBOURS)
+    return Near(pv.PolyData(rows_of(points, origin)), light, np.searchsorted(origin, cells), origin)
+
+
+def neighbours(points: ArraySource, ids: Indices, count: int) -> Indices:
+    """Return the numbers of all points that are among the nearest of some of them.
+
+    Parameters
+    ----------
+    points : ArraySource, shape (N, 3)
+        Points.
+    ids : ndarray of int, shape (M,)
+        Numbers of some points.
+    count : int
+        Number of points that are nearest to each.
+    """
+    places = rows_of(points, ids).astype(np.float64)
+    far = np.full((len(ids), count), np.inf)
+    nearest = np.zeros(far.shape, dtype=np.intp)
+    blocks = _pool.blocks(points.shape[0], 4 * BLOCK)
+    # Those of its own block tell how far away the nearest of another may be.
+    for block, is_own in [(block, own) for own in (True, False) for block in blocks]:
+        chosen = np.flatnonzero(((ids >= block.start) & (ids < block.stop)) == is_own)
+        rows = np.asarray(points[block], dtype=np.float64)
+        finite = np.flatnonzero(finite_points(rows))
+        if not len(finite) or not len(chosen):
+            continue
+        rows, at = rows[finite], places[chosen]
+        outside = np.maximum(np.maximum(rows.min(axis=0) - at, at - rows.max(axis=0)), 0.0)
+        chosen = chosen[np.linalg.norm(outside, axis=1) <= far[chosen, -1]]
+        tree = cKDTree(rows, balanced_tree=False, compact_nodes=False)
+        more, number = tree.query(
+            places[chosen], count, distance_upper_bound=far[chosen, -1].max(initial=0.0)
+        )
+        more, number = np.hstack([far[chosen], more]), np.append(finite + block.start, 0)[number]
+        number = np.hstack([nearest[chosen], number])
+        order = np.argsort(more, axis=1, kind="stable")[:, :count]
+        far[chosen] = np.take_along_axis(more, order, axis=1)
+        nearest[chosen] = np.take_along_axis(number, order, axis=1)
+    return np.unique(nearest[np.isfinite(far)])
 
 
 def _with_rows(

@@ -19,7 +19,7 @@ from vizlight.draw.cameras import footprint
 from vizlight.draw.live import in_view
 from vizlight.draw.strokes import lay_on_surfaces
 from vizlight.model.kernels import unit_rows
-from vizlight.vtk.arrays import GridPoints
+from vizlight.vtk.arrays import MadePoints
 from vizlight.vtk.cells import as_numpy, as_vtk
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Indices, Slice
     from vizlight.shading.display import Bytes
     from vizlight.shading.inputs import ArraySource
-    from vizlight.vtk.drawn import DrawnCells
+    from vizlight.vtk.drawn import DrawnCells, DrawnPoints
 
 #: Number of cells that are drawn at once, so that memory goes by pixels.
 BLOCK = 1 << 19
@@ -57,7 +57,7 @@ class Cells(NamedTuple):
     """
 
     points: ArraySource
-    corners: Indices | DrawnCells
+    corners: Indices | DrawnCells | DrawnPoints
     width: float
     diameter: float | None = None
 
@@ -110,7 +110,7 @@ class Cells(NamedTuple):
 
 def rows_of(source: ArraySource, ids: Indices) -> Array:
     """Return rows of points or of an array by their numbers."""
-    rows: Array = np.asarray(source.at(ids) if isinstance(source, GridPoints) else source[:][ids])
+    rows: Array = np.asarray(source.at(ids) if isinstance(source, MadePoints) else source[:][ids])
     return rows
 
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check
 from vizlight.draw.cameras import VIEW_ANGLE, camera_on
@@ -14,7 +17,7 @@ from vizlight.filters.lighting import part_of
 from vizlight.mesh import subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import length_rows, unit_rows
-from vizlight.observers.near import near, tangents_at
+from vizlight.observers.near import near, near_points, tangents_at
 from vizlight.observers.pixels import Cells, rows_of, toward_eye
 from vizlight.scene import Scene, View
 from vizlight.scene.view import as_view, is_camera
@@ -22,17 +25,19 @@ from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.verify.between import Places, interpolated, mean_spaces
-from vizlight.vtk.arrays import points_of
-from vizlight.vtk.drawn import DrawnCells, DrawnSegments, DrawnTriangles
+from vizlight.vtk import hull
+from vizlight.vtk.arrays import MadePoints, is_of_cells, points_of
+from vizlight.vtk.drawn import DrawnCells, DrawnPoints, DrawnSegments, DrawnTriangles
+from vizlight.vtk.hull import SOLID
+from vizlight.vtk.normals import is_scan
 
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    import pyvista as pv
-
     from vizlight._types import Array, Bools, Given, Indices, Keywords, Raw, Rows
     from vizlight.observers.pixels import Pixels
     from vizlight.scene.conversion import AnyView
+    from vizlight.shading.inputs import ArraySource
 
     Kind: TypeAlias = Literal["surface", "line", "point"]
 
@@ -229,11 +234,15 @@ class SeenMesh:
         Numbers of the glyphs that cells belong to; None where they are no glyphs.
     by_axes : bool
         Whether the hues of lines are those of the axes along which they run.
+    large : bool
+        Whether tangents and normals are made near the places that are read.
+    matrix : ndarray, shape (4, 4), or None
+        Place of a large mesh, which is not moved as a whole.
     """
 
     kind: Kind
     mesh: pv.DataSet
-    cells: Indices | DrawnCells
+    cells: Indices | DrawnCells | DrawnPoints
     inputs: ShadingInputs
     options: ShadingOptions
     scene: Scene
@@ -247,6 +256,8 @@ class SeenMesh:
     diameter: float | None = None
     glyph: Indices | None = None
     by_axes: bool = False
+    large: bool = False
+    matrix: Array | None = None
 
     @property
     def by_form(self) -> bool:
@@ -257,17 +268,13 @@ class SeenMesh:
     def has_tangents(self) -> bool:
         """Whether the mesh has tangents."""
         named = self.light.tangents is not None
-        return named or self.inputs.tangents is not None or self._has_own_tangents
-
-    @property
-    def _has_own_tangents(self) -> bool:
-        """Whether the mesh is lines with tangents that are made where they are read."""
-        return self.kind == "line" and self.light.positions is None and self.inputs.tangents is None
+        return named or self.inputs.tangents is not None or (self.kind == "line" and self.large)
 
     @property
     def drawn(self) -> Cells:
         """Points and cells to draw."""
-        return Cells(points_of(self.mesh, None), self.cells, self.width, self.diameter)
+        points = _moved_points(points_of(self.mesh, None), self.matrix)
+        return Cells(points, self.cells, self.width, self.diameter)
 
     def ahead(self, cells: Indices) -> Array:
         """Return whether segments run with the data, by their vectors or by the time along them.
@@ -295,23 +302,30 @@ class SeenMesh:
         if values is not None and self.flat:
             assert isinstance(self.cells, DrawnTriangles)
             values = values[self.cells.cells(cells)]
-        if isinstance(self.cells, DrawnSegments) and self._has_own_tangents:
+        corners = self.cells[cells]
+        if not self.large:
+            return dataclasses.replace(self, cells=corners, values=values)
+        if isinstance(self.cells, DrawnSegments):
             return self._near_lines(self.cells, cells)
-        if not (isinstance(self.cells, DrawnTriangles) and is_large(self.mesh)):
-            return dataclasses.replace(self, cells=self.cells[cells], values=values)
-        around = near(self.mesh, self.cells, cells, self.light)
-        inputs = _inputs(around.mesh, self.path, self.scene, around.light, lit=self.lit)
+        if isinstance(self.cells, DrawnTriangles):
+            around = near(self.mesh, self.cells, cells, self.light)
+            mesh, light = moved(around.mesh, around.light, self.matrix)
+        else:
+            around = near_points(self.inputs.points, corners, self.light)
+            mesh, light = around.mesh, around.light
+        inputs = _inputs(mesh, self.path, self.scene, light, self.kind, lit=self.lit)
         if values is not None and not self.flat:
             values = values[around.origin]
         return dataclasses.replace(
-            self, mesh=around.mesh, cells=around.corners, inputs=inputs, values=values
+            self, mesh=mesh, cells=around.corners, inputs=inputs, values=values, matrix=None
         )
 
     def _near_lines(self, lines: DrawnSegments, cells: Indices) -> SeenMesh:
         """Return some segments with their points alone, and the tangents at these."""
 
         def tangents_of(mesh: pv.PolyData) -> Array:
-            tangents = part_of(mesh, self.path, self.scene, self.light).inputs.tangents
+            placed, light = moved(mesh, self.light, self.matrix)
+            tangents = part_of(placed, self.path, self.scene, light).inputs.tangents
             assert tangents is not None
             return tangents[:]
 
@@ -326,33 +340,61 @@ class SeenMesh:
         return dataclasses.replace(self, cells=corners, inputs=inputs, values=values)
 
 
-def _are_long(mesh: pv.DataSet, lines: DrawnSegments, light: LightOptions) -> bool:
-    """Return whether tangents of lines are made near the places that are read."""
-    if mesh.n_points <= WHOLE or lines.may_join or subdivision.kept_tangents(mesh) is not None:
-        return False
-    return light.tangents is None and light.positions is None and not light.conditioned
-
-
 def is_large(mesh: pv.DataSet) -> bool:
     """Return whether a surface is looked at near the places that are read, and not as a whole."""
     large = mesh.n_cells > WHOLE and GLYPH not in mesh.point_data
     return large and DrawnTriangles.of(mesh) is not None
 
 
+def is_solid(mesh: pv.DataSet, light: LightOptions) -> bool:
+    """Return whether the outer surface of cells that fill space has all that a picture shows."""
+    if isinstance(mesh, pv.PolyData) or hull.dimension(mesh) != SOLID:
+        return False
+    names = light.tangents.split(",") if isinstance(light.tangents, str) else ()
+    # Means of cells are those of all around a point, inside too.
+    if any(map(partial(is_of_cells, mesh), names)):
+        return False
+    return not hull.is_curved(mesh) and GLYPH not in mesh.point_data
+
+
+def _made_near(
+    mesh: pv.DataSet, cells: Indices | DrawnCells | DrawnPoints, light: LightOptions, *, lit: bool
+) -> bool:
+    """Return whether tangents and normals of a mesh are made near the places that are read."""
+    if isinstance(cells, DrawnTriangles):
+        return is_large(mesh)
+    if mesh.n_points <= WHOLE or light.positions is not None or light.tangents is not None:
+        return False
+    if isinstance(cells, DrawnSegments):
+        # Which of several lines a segment is a part of is known of segments alone.
+        apart = cells.are_single or not cells.may_join
+        return apart and not light.conditioned and subdivision.kept_tangents(mesh) is None
+    given = light.normals is not None or mesh.point_data.active_normals_name is not None
+    return lit and not given and is_scan(mesh)
+
+
 def _inputs(
-    mesh: pv.DataSet, path: str, scene: Scene, light: LightOptions, *, lit: bool
+    mesh: pv.DataSet, path: str, scene: Scene, light: LightOptions, kind: Kind, *, lit: bool
 ) -> ShadingInputs:
-    """Return the points, the tangents and, where colours mean light, the normals of a surface."""
-    if light.tangents is None and not lit:
+    """Return the points, the tangents and, where colours mean light, the normals of a mesh."""
+    if light.tangents is None and not lit and kind != "line":
         return ShadingInputs(points=points_of(mesh, light.positions))
-    # Normals are read beside the tangents: they are the shape that a reader sees. Surfaces without
-    # tangents have their attached shadow in any case.
-    conditioned = lit and light.tangents is not None
+    conditioned = light.conditioned
+    if kind == "surface":
+        # Normals are read beside the tangents: they are the shape that a reader sees. Surfaces
+        # without tangents have their attached shadow in any case.
+        conditioned = lit and light.tangents is not None
     return part_of(mesh, path, scene, dataclasses.replace(light, conditioned=conditioned)).inputs
 
 
 def part_on(
-    mesh: pv.DataSet, scene: Scene, options: LightOptions, path: str = "", **more: Given
+    mesh: pv.DataSet,
+    scene: Scene,
+    options: LightOptions,
+    path: str = "",
+    *,
+    matrix: Array | None = None,
+    **more: Given,
 ) -> SeenMesh:
     """Return the part that the meter needs of a mesh in the light of a scene.
 
@@ -366,6 +408,8 @@ def part_on(
         How the mesh is lit.
     path : str, optional
         Name of the mesh among others, for errors.
+    matrix : ndarray, shape (4, 4), optional
+        Place of the mesh.
     **more
         Further attributes of the part.
 
@@ -377,31 +421,96 @@ def part_on(
     options, is_glyphs = of_glyphs(mesh, options), GLYPH in mesh.point_data
     if is_glyphs:
         more["lit"] = False
+    elif is_solid(mesh, options):
+        mesh, options, values = _on_surface(mesh, options, more.get("values"))
+        more |= {"values": values}
+    if matrix is not None and np.array_equal(matrix, np.eye(4)):
+        matrix = None
     # A key has no depth by which a cue could fade it.
     scene = scene.replace(depth_cue=None)
     drawn = DrawnTriangles.of(mesh) or DrawnSegments.of(mesh)
+    cells: Indices | DrawnCells | DrawnPoints
     cells = subdivision.simplices(mesh) if drawn is None else drawn
     kind: Kind = "surface" if cells.shape[1] == 3 else "line"
     if not len(cells):
-        kind, cells = "point", np.arange(mesh.n_points)[:, np.newaxis]
+        kind, cells = "point", DrawnPoints(mesh.n_points)
     # Shares of light that reach a place are the picture's to show, and not of the key.
     light = dataclasses.replace(options, occlusion=None, bundle=False)
-    is_near = kind == "surface" and is_large(mesh)
-    if isinstance(cells, DrawnSegments):
-        is_near = _are_long(mesh, cells, light)
-    if is_near:
-        inputs = ShadingInputs(points=points_of(mesh, options.positions))
-    elif kind == "surface":
-        inputs = _inputs(mesh, path, scene, light, lit=more.get("lit", True))
+    lit = more.get("lit", True)
+    if large := _made_near(mesh, cells, light, lit=lit):
+        points = points_of(mesh, options.positions)
+        points = points if options.positions else _moved_points(points, matrix)
+        inputs = ShadingInputs(points=points)
     else:
-        inputs = part_of(mesh, path, scene, light).inputs
+        mesh, light = moved(mesh, light, matrix)
+        inputs = _inputs(mesh, path, scene, light, kind, lit=lit)
     inputs = dataclasses.replace(inputs.of_faces(), occlusion=None, transmittance=None, shadow=None)
     # In float64, so that no error of the engine is taken for one of the reader.
     exact = ShadingOptions.of(vars(options) | {"precision": "float64", "components": False})
     return SeenMesh(
         kind=kind, mesh=mesh, cells=cells, inputs=inputs, options=exact, scene=scene, light=light,
-        path=path, glyph=_glyphs(mesh, cells) if is_glyphs else None, **more,
+        path=path, glyph=_glyphs(mesh, cells) if is_glyphs else None, large=large,
+        matrix=matrix if large else None, **more,
     )  # fmt: skip
+
+
+def _on_surface(
+    mesh: pv.DataSet, options: LightOptions, values: Raw | None
+) -> tuple[pv.DataSet, LightOptions, Raw | None]:
+    """Return the outer surface of a mesh with the rows of its arrays, and of what is given."""
+    surface, origin = hull.outer_points(mesh)
+    given: Keywords = {
+        name: np.asarray(rows)[origin]
+        for name in ("tangents", "normals")
+        if not isinstance(rows := getattr(options, name), str | None)
+    }
+    values = values if values is None else values[origin]
+    return pv.wrap(surface), dataclasses.replace(options, **given), values
+
+
+def moved(
+    mesh: pv.DataSet, options: LightOptions, matrix: Array | None
+) -> tuple[pv.DataSet, LightOptions]:
+    """Return a mesh, and the options of its light, where an actor has placed it.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh; it is not changed.
+    options : LightOptions
+        How the mesh is lit: tangents move with it, and normals stay across its surface.
+    matrix : ndarray, shape (4, 4), or None
+        Matrix of the actor.
+    """
+    options = of_glyphs(mesh, options)
+    if matrix is None:
+        return mesh, options
+    linear = matrix[:3, :3]
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Integer points, vector")
+        # Of a copy: PyVista makes active vectors of whole numbers in the mesh itself float32.
+        placed = mesh.copy(deep=False).transform(
+            matrix, transform_all_input_vectors=False, inplace=False
+        )
+    turned: Keywords = {}
+    for name, matrix_of_rows in (("tangents", linear.T), ("normals", np.linalg.inv(linear))):
+        array = getattr(options, name)
+        if array is not None:
+            rows = np.asarray(mesh.point_data[array] if isinstance(array, str) else array)
+            turned[name] = (rows.reshape(-1, 3) @ matrix_of_rows).reshape(rows.shape)
+    return placed, dataclasses.replace(options, **turned)
+
+
+def _moved_points(points: ArraySource, matrix: Array | None) -> ArraySource:
+    """Return points where a matrix places them, which are not stored."""
+    if matrix is None:
+        return points
+
+    def at(ids: Indices) -> Array:
+        moved_rows: Array = rows_of(points, ids) @ matrix[:3, :3].T + matrix[:3, 3]
+        return moved_rows
+
+    return MadePoints(points.shape[0], at)
 
 
 def of_glyphs(mesh: pv.DataSet, options: LightOptions) -> LightOptions:
@@ -411,7 +520,7 @@ def of_glyphs(mesh: pv.DataSet, options: LightOptions) -> LightOptions:
     return options
 
 
-def _glyphs(mesh: pv.DataSet, cells: Indices | DrawnCells) -> Indices:
+def _glyphs(mesh: pv.DataSet, cells: Indices | DrawnCells | DrawnPoints) -> Indices:
     """Return the numbers of the glyphs that cells belong to.
 
     VTK writes the points of one glyph after those of another, as many of each. In another mesh,

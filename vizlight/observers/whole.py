@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import warnings
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -25,7 +24,7 @@ from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.figures import Legibility
 from vizlight.observers.measure import measure, toward
 from vizlight.observers.pixels import frame_of
-from vizlight.observers.samples import GLYPH, of_glyphs, part_on
+from vizlight.observers.samples import GLYPH, part_on
 from vizlight.scene import Light, Scene, View
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.cells import has_faces
@@ -198,43 +197,10 @@ def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Se
         return None
     # What is drawn has its sharp edges already.
     options = dataclasses.replace(options, feature_angle=None)
-    placed, options = moved(mesh, options, matrix_of(actor.GetMatrix()))
     return part_on(
-        placed, scene, options, lit=lit, width=width, diameter=live.stroke.diameter, **colors
-    )
-
-
-def moved(
-    mesh: pv.DataSet, options: LightOptions, matrix: Array
-) -> tuple[pv.DataSet, LightOptions]:
-    """Return a mesh, and the options of its light, where an actor has placed it.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh; it is not changed.
-    options : LightOptions
-        How the mesh is lit: tangents move with it, and normals stay across its surface.
-    matrix : ndarray, shape (4, 4)
-        Matrix of the actor.
-    """
-    options = of_glyphs(mesh, options)
-    if np.array_equal(matrix, np.eye(4)):
-        return mesh, options
-    linear = matrix[:3, :3]
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Integer points, vector")
-        # Of a copy: PyVista makes active vectors of whole numbers in the mesh itself float32.
-        placed = mesh.copy(deep=False).transform(
-            matrix, transform_all_input_vectors=False, inplace=False
-        )
-    turned: Keywords = {}
-    for name, matrix_of_rows in (("tangents", linear.T), ("normals", np.linalg.inv(linear))):
-        array = getattr(options, name)
-        if array is not None:
-            rows = np.asarray(mesh.point_data[array] if isinstance(array, str) else array)
-            turned[name] = (rows.reshape(-1, 3) @ matrix_of_rows).reshape(rows.shape)
-    return placed, dataclasses.replace(options, **turned)
+        mesh, scene, options, matrix=matrix_of(actor.GetMatrix()), lit=lit, width=width,
+        diameter=live.stroke.diameter, **colors,
+    )  # fmt: skip
 
 
 def _mesh_of(mapper: vtkMapper) -> pv.DataSet | None:
@@ -301,8 +267,10 @@ def _colored(
     if not colors and marks is None and not has_lines_only(mesh):
         return None
     scene = Scene(lights=Light.headlight(), view=View.from_camera(renderer.GetActiveCamera()))
-    placed, options = moved(mesh, LightOptions(tangents=marks), matrix_of(actor.GetMatrix()))
-    return part_on(placed, scene, options, width=width, lit=False, diameter=diameter, **colors)
+    return part_on(
+        mesh, scene, LightOptions(tangents=marks), matrix=matrix_of(actor.GetMatrix()),
+        width=width, lit=False, diameter=diameter, **colors,
+    )  # fmt: skip
 
 
 def _values(mesh: pv.DataSet, name: str | None, table: Foreign) -> Keywords:

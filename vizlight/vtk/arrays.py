@@ -26,13 +26,34 @@ if TYPE_CHECKING:
     from vizlight.shading.inputs import ArraySource
 
 
-class GridPoints:
-    """Points of an image or a rectilinear grid, computed for each slice and not stored."""
+class MadePoints:
+    """Points that are computed for each slice and not stored.
+
+    Parameters
+    ----------
+    count : int
+        Number of points.
+    at : callable
+        Function from numbers of points to these.
+    """
 
     dtype = np.dtype(np.float64)
 
+    def __init__(self, count: int, at: Callable[[Indices], Array]) -> None:
+        self.shape: tuple[int, ...] = (count, 3)
+        #: Function that returns some of the points by their numbers.
+        self.at = at
+
+    def __getitem__(self, rows: Rows, /) -> Array:
+        """Return a slice of the points."""
+        return self.at(np.arange(*rows.indices(self.shape[0])))
+
+
+class GridPoints(MadePoints):
+    """Points of an image or a rectilinear grid; the first index varies fastest."""
+
     def __init__(self, grid: vtkImageData | vtkRectilinearGrid) -> None:
-        self.shape: tuple[int, ...] = (grid.GetNumberOfPoints(), 3)
+        super().__init__(grid.GetNumberOfPoints(), self._at)
         # The extent of a part of an image need not begin at 0, but its origin is the place of index
         # 0.
         low = np.array(grid.GetExtent()[::2])
@@ -52,12 +73,7 @@ class GridPoints:
                 [axis[i] for axis, i in zip(axes, ijk.T, strict=True)], axis=1
             )
 
-    def __getitem__(self, rows: Rows, /) -> Array:
-        """Return a slice of the points; the first index varies fastest."""
-        return self.at(np.arange(*rows.indices(self.shape[0])))
-
-    def at(self, ids: Indices) -> Array:
-        """Return some of the points by their numbers."""
+    def _at(self, ids: Indices) -> Array:
         ijk = np.stack(np.unravel_index(ids, self._dimensions, order="F"), axis=1)
         return self._place(ijk)
 

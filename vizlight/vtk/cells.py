@@ -209,12 +209,11 @@ def first_twins(cells: vtkCellArray) -> Indices | None:
     ids, offsets = connectivity(cells)
     number = np.zeros(max(len(offsets) - 1, 0), dtype=np.uint64)
     with np.errstate(over="ignore"):
-        # Sums of mixed numbers do not depend on the order of the corners; from 1 on, as 0 is mixed
-        # to 0 and the first point would not count.
-        of_point = mixed(np.arange(1, int(ids.max(initial=0)) + 2, dtype=np.uint64))
         for block in _pool.blocks(len(number), 1 << 16):
             ends = offsets[block.start : block.stop + 1]
-            corners = of_point[ids[ends[0] : ends[-1]]]
+            # Sums of mixed numbers do not depend on the order of the corners; from 1 on, as 0 is
+            # mixed to 0 and the first point would not count.
+            corners = mixed(ids[ends[0] : ends[-1]].astype(np.uint64) + np.uint64(1))
             # Sums wrap around at 2^64, which their differences undo.
             sums = np.concatenate([[np.uint64(0)], np.cumsum(corners, dtype=np.uint64)])
             number[block] = np.diff(sums[ends - ends[0]])

@@ -39,6 +39,27 @@ BLOCK = 1 << 16
 TABLE = 1 << 20
 
 
+class DrawnPoints:
+    """Numbers of all points of a mesh, which are cells of one corner.
+
+    Parameters
+    ----------
+    count : int
+        Number of points.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.shape = (count, 1)
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, rows: Rows, /) -> Indices:
+        """Return some of the points, shape (M, 1)."""
+        numbers = np.arange(*rows.indices(len(self))) if isinstance(rows, slice) else rows
+        return np.asarray(numbers)[:, np.newaxis]
+
+
 class DrawnCells:
     """Parts of polygons or of lines, all with as many corners, one after the other.
 
@@ -258,10 +279,15 @@ class DrawnSegments(DrawnCells):
         return cls(mesh.GetLines()) if _are_of(mesh.GetLines(), SEGMENT).all() else None
 
     @property
+    def are_single(self) -> bool:
+        """Whether all lines are single segments."""
+        return self._size == SEGMENT
+
+    @property
     def may_join(self) -> bool:
         """Whether some lines are single segments, which may be parts of longer lines."""
         if self._size:
-            return self._size == SEGMENT
+            return self.are_single
         blocks = _pool.blocks(self.polygons, BLOCK)
         sizes = (np.diff(self._offsets[block.start : block.stop + 1]) for block in blocks)
         return any((each == SEGMENT).any() for each in sizes)

@@ -20,6 +20,7 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter, vtkGeometryFilter
 
+from vizlight import _pool
 from vizlight.vtk.arrays import points_of
 from vizlight.vtk.bezier import as_lagrange
 from vizlight.vtk.cells import (
@@ -30,6 +31,7 @@ from vizlight.vtk.cells import (
     connectivity,
     dimensions,
     finite_faces,
+    first_twins,
     places,
 )
 
@@ -48,7 +50,9 @@ NUMBERS = "vizlight numbers"
 #: Types of cells whose faces are flat or ruled: up to 20, convex point sets, polyhedra.
 _LAST_LINEAR, _OTHER_LINEAR = 20, {41, 42}
 #: Dimension of cells that fill space.
-_SOLID = 3
+SOLID = 3
+#: Type of polyhedra, whose faces are stored apart from their points.
+_POLYHEDRON = 42
 #: Types that stand for vertices, lines, polygons and strips.
 _KINDS = (2, 4, 7, 6)
 
@@ -141,7 +145,7 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
 
 def _has_walls(mesh: Dataset) -> bool:
     """Return whether a dataset has flat polygons beside solid cells."""
-    return {_SOLID - 1, _SOLID}.issubset(map(_dimension, cell_types(mesh)))
+    return {SOLID - 1, SOLID}.issubset(map(_dimension, cell_types(mesh)))
 
 
 def _join_walls(surface: vtkPolyData, grid: Dataset) -> None:
@@ -152,7 +156,7 @@ def _join_walls(surface: vtkPolyData, grid: Dataset) -> None:
     ids, offsets = connectivity(surface.GetPolys())
     ids, sizes, doubled = ids.copy(), np.diff(offsets), []
     kinds = np.array([grid.GetCellType(cell) for cell in cells.tolist()])
-    solid = np.isin(kinds, [kind for kind in np.unique(kinds) if _dimension(kind) == _SOLID])
+    solid = np.isin(kinds, [kind for kind in np.unique(kinds) if _dimension(kind) == SOLID])
     for size in np.unique(sizes).tolist():
         polygons = np.flatnonzero(sizes == size)
         corners = offsets[polygons][:, np.newaxis] + np.arange(size)
@@ -186,7 +190,7 @@ def _outward(surface: vtkPolyData, grid: vtkUnstructuredGrid, cells: Indices) ->
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a + b + c - 3 * middles) < 0
     # One by one, since the array of all types has another name in each version of VTK.
     turned = np.unique(cells[inward])
-    solid = {kind for kind in cell_types(grid) if _dimension(kind) == _SOLID}
+    solid = {kind for kind in cell_types(grid) if _dimension(kind) == SOLID}
     fills = [grid.GetCellType(cell) in solid for cell in turned.tolist()]
     inward &= np.isin(cells, turned[np.array(fills, dtype=np.bool_)])
     # The corners of a polygon from its last to its first, or as they are.
@@ -224,14 +228,70 @@ def _merged(surface: vtkPolyData, ids: Indices) -> tuple[vtkPolyData, Indices]:
         put(cells)
     merged.GetCellData().ShallowCopy(surface.GetCellData())
     merged.GetFieldData().ShallowCopy(surface.GetFieldData())
-    data = surface.GetPointData()
+    _take_rows(merged, surface, first)
+    return merged, points
+
+
+def _take_rows(part: vtkPolyData, whole: Dataset, rows: Indices) -> None:
+    """Give a surface some rows of all arrays of the points of a dataset."""
+    data = whole.GetPointData()
     for i in range(data.GetNumberOfArrays()):
         # Arrays of words have no rows of numbers, and are no data of a point of a picture.
         if (array := data.GetArray(i)) is not None:
-            at = merged.GetPointData().AddArray(as_vtk(as_numpy(array)[first], array.GetName()))
+            at = part.GetPointData().AddArray(as_vtk(as_numpy(array)[rows], array.GetName()))
             if (kind := data.IsArrayAnAttribute(i)) >= 0:
-                merged.GetPointData().SetActiveAttribute(at, kind)
-    return merged, points
+                part.GetPointData().SetActiveAttribute(at, kind)
+
+
+#: Number of cells of a grid whose surface is found at once.
+BLOCK = 1 << 20
+
+
+def outer_points(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
+    """Return :func:`outer_surface` without the data of cells, of many linear cells by blocks.
+
+    VTK's filter would take memory for each point and cell of the whole. What two blocks have in
+    common is no surface of the whole.
+    """
+    hidden = mesh.GetPointData().HasArray(GHOSTS) or mesh.GetCellData().HasArray(GHOSTS)
+    kind, *others = sorted(cell_types(mesh)) or [_POLYHEDRON]
+    if not isinstance(mesh, vtkUnstructuredGrid) or hidden or others or kind == _POLYHEDRON:
+        return outer_surface(mesh)
+    size = mesh.GetCells().IsHomogeneous()
+    if mesh.GetNumberOfCells() <= BLOCK or size < 0:
+        return outer_surface(mesh)
+    ids = as_numpy(mesh.GetCells().GetConnectivityArray())
+    corners, ends = np.zeros(0, np.intp), np.zeros(1, np.intp)
+    for block in _pool.blocks(mesh.GetNumberOfCells(), BLOCK):
+        some = ids[size * block.start : size * block.stop]
+        low, high = int(some.min()), int(some.max()) + 1
+        # Neighbouring cells mostly have neighbouring points.
+        own, number = np.arange(low, high), some - low
+        if len(own) > len(some):
+            own, number = np.unique(some, return_inverse=True)
+        points, cells, part = vtkPoints(), vtkCellArray(), vtkUnstructuredGrid()
+        points.SetData(as_vtk(places(mesh)[own]))
+        cells.SetData(size, as_vtk(number))
+        part.SetPoints(points)
+        part.SetCells(kind, cells)
+        surface, origin = outer_surface(part)
+        more, stops = connectivity(surface.GetPolys())
+        corners = np.concatenate([corners, own[origin[more]]])
+        ends = np.concatenate([ends, ends[-1] + stops[1:]])
+        both = vtkCellArray()
+        both.SetData(as_vtk(ends), as_vtk(corners))
+        if (first := first_twins(both)) is not None:
+            kept = np.bincount(first, minlength=len(first))[first] == 1
+            corners = corners[np.repeat(kept, np.diff(ends))]
+            ends = np.concatenate([[0], np.cumsum(np.diff(ends)[kept])])
+    points, cells, whole = vtkPoints(), vtkCellArray(), vtkPolyData()
+    origin, corners = np.unique(corners, return_inverse=True)
+    points.SetData(as_vtk(places(mesh)[origin]))
+    cells.SetData(as_vtk(ends), as_vtk(corners))
+    whole.SetPoints(points)
+    whole.SetPolys(cells)
+    _take_rows(whole, mesh, origin)
+    return whole, origin
 
 
 def surface_of(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
