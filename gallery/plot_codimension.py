@@ -19,7 +19,7 @@ from vizlight.model import brightness
 
 
 def wound(t):
-    """Return a curve that runs around one way 81 times while it does the other way 40 times."""
+    """Return a curve that is wound on the torus."""
     return 1.5 * np.cos(t), 1.5 * np.sin(t), 0.75 * np.cos(81 / 40 * t), 0.75 * np.sin(81 / 40 * t)
 
 
