@@ -51,7 +51,7 @@ _POWER = """float viz_power(float x, float deficit, float exponent) {
 #: Texture of the heights of a field.
 HEIGHTS = "vizField"
 #: t = d / r at a fragment, by the heights of a field in a texture: from ``p' = p - d n`` a ray is
-#: followed from cell to cell, as :mod:`vizlight.geometry.relief.walks` does. Places are in cells,
+#: followed from cell to cell, as by :mod:`vizlight.geometry.relief.shadowing`. Places are in cells,
 #: with heights above the origin, distances along rays in the unit of the mesh.
 _SHADOW = """float viz_below(float f0, float f1, float f2, float end) {
   float square = f1 * f1 - 4.0 * f0 * f2;
