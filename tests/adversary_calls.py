@@ -345,7 +345,7 @@ BESIDE = (
 )  # fmt: skip
 #: Public classes that only vizlight makes, which are records, or what others derive from.
 RETURNED = {
-    "geometry.contours.banding.Bands", "geometry.contours.banding.Laminae",
+    "geometry.contours.banding.Bands",
     "observers.figures.Legibility", "model.cylinder.Gradient", "model.highlights.MaximumError",
     "draw.backends.Probe", "pieces.run.Lit", "draw.testing.Difference",
     "draw.snapshots.same_picture", "draw.component.Component", "draw.paraview.Shader",
@@ -442,9 +442,6 @@ PUBLIC = public()
 
 #: Objects whose methods are called, by the end of a callable's name.
 SELF = {
-    "Laminae.order": lambda: vizlight.geometry.isoluminance.sphere(
-        (0, 0, 0), 1.0, direction=UP, levels=4, form="laminae"
-    ),
     "Component.add_key": lambda: plotter().vizlight,
     "Component.show_key": lambda: plotter().vizlight,
     **{
