@@ -9,8 +9,6 @@ contrast; the curve in 4-space has a contrast of 0.18. Lower row: the exponent p
 printed in the paper, brings all means near 1/2, and this contrast to 0.70.
 """
 
-from fractions import Fraction
-
 import numpy as np
 import pyvista as pv
 
@@ -19,7 +17,13 @@ from vizlight import Light, Material, Scene, render
 from vizlight.geometry import manifolds
 from vizlight.model import brightness
 
-curve = manifolds.torus_curve(Fraction(81, 40), r1=1.5, r2=0.75, resolution=64 * 192)
+
+def wound(t):
+    """Return a curve that is wound on the torus."""
+    return 1.5 * np.cos(t), 1.5 * np.sin(t), 0.75 * np.cos(81 / 40 * t), 0.75 * np.sin(81 / 40 * t)
+
+
+curve = manifolds.parametric(wound, [(0, 80 * np.pi)], 4, resolution=64 * 192)
 shapes = {1: curve, 2: manifolds.torus(1.5, 0.75, resolution=192)}
 matte = Material(ambient=0.0, diffuse=1.0, specular=0.0)
 # The torus below the curves is black, so that their brightness can be compared.

@@ -18,14 +18,22 @@ import vizlight
 from vizlight import Light, Material, Scene, View, render
 from vizlight.geometry import manifolds
 
-curve = vizlight.manifold(
-    manifolds.complex_curve(
-        lambda z: z**3 / 3 - z / 2,
-        derivative=lambda z: z**2 - 0.5,
-        domain=((-1.35, 1.35),) * 2,
-        resolution=220,
-    )
-)
+
+def place(x, y):
+    """Return the points (z, w) for z = x + i y."""
+    z = x + 1j * y
+    w = z**3 / 3 - z / 2
+    return x, y, w.real, w.imag
+
+
+def tangents(x, y):
+    """Return the derivatives by x and by y: dw is (z^2 - 1/2) dz."""
+    slope = (x + 1j * y) ** 2 - 0.5
+    return (1, 0, slope.real, slope.imag), (0, 1, -slope.imag, slope.real)
+
+
+domain = ((-1.35, 1.35),) * 2
+curve = vizlight.manifold(manifolds.parametric(place, domain, 4, tangents=tangents, resolution=220))
 curve["phase of w"] = np.angle(np.asarray(curve["position"]) @ [0, 0, 1, 1j])
 hues = ["#e05a47", "#e8c34a", "#5bb06a", "#4aa3c8", "#7f6fd0", "#c65a9a", "#e05a47"]
 wheel = colors.LinearSegmentedColormap.from_list("wheel", hues)

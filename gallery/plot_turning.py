@@ -20,8 +20,14 @@ from vizlight import Light, Material, Scene, View, render
 from vizlight.geometry import manifolds
 
 turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 29)[1:], (-0.7, 0.0, 0.7))
-base = np.stack([np.cos(turn), np.sin(turn), height / np.sqrt(1 - height**2)], axis=-1)
-fibres = vizlight.manifold(manifolds.hopf_fibres(base.reshape(-1, 3), resolution=192))
+# The fibre over a point of the sphere is e^(i t) (z1, z2): its tangent is i times the point.
+first, second = np.sqrt((1 + height) / 2), np.sqrt((1 - height) / 2) * np.exp(-1j * turn)
+around = np.exp(2j * np.pi * np.arange(192) / 192)
+pairs = np.stack([np.outer(z, around).ravel() for z in (first, second)], axis=1)
+number = np.arange(len(pairs)).reshape(-1, 192)
+cells = np.stack([number, np.roll(number, -1, axis=1)], axis=-1).reshape(-1, 2)
+frame = (1j * pairs).view(float)[:, np.newaxis]
+fibres = vizlight.manifold(manifolds.Manifold(pairs.view(float), frame, cells))
 fibres["torus"] = np.repeat([0.0, 1.0, 2.0], fibres.n_points // 3)
 light, eye = (kind(direction=(0.3, -1, 0.6, 0)) for kind in (Light, View))
 scene = Scene(lights=light, view=eye, material=Material(ambient=0.1, diffuse=0.9, specular=0))

@@ -186,7 +186,7 @@ VALUES = {
     "length": 0.1, "levels": 4, "light_eye_angle": [1.0], "lights": 2, "n": 4, "n_h": [0.5, 0.9],
     "name": "luminance", "names": "h,h", "nu": [0.1, 0.2], "offset": (1.0, 0.0, 0.0),
     "operation": "union", "outline": [[0, 0], [1, 0], [0, 1]], "plane": "xw", "r": [10.0],
-    "radius": 1.0, "ratio": 1.5, "resolution": 6, "rho": [0.1, 0.2], "samples": 16,
+    "radius": 1.0, "resolution": 6, "rho": [0.1, 0.2], "samples": 16,
     "scalars": "s", "seeds": 5, "shininess": 20.0, "sin_alpha": [0.3, 1.0], "size": (60, 40),
     "theta": 0.4, "tolerance": 0.1, "turns": ("xw", 0.3), "xyz": (1.0, 0.0, 0.0),
     # arrays
@@ -303,19 +303,17 @@ OWN = {
     "warped": {"mesh": hills, "name": "h"},
     "with_vectors": {"mesh": hills},
     "manifold": {"scene": SCENE4},
-    "manifolds.complex_curve": {"function": np.square},
     "direction_colors": {"mesh": lambda: pv.Spline(np.cumsum(unit(5, 3), 0), 8)},
     "contours.isoluminance.sphere": SEEN,
     "truncus": SEEN | {"radii": (1.0, 0.5), "height": 1.0},
     "Frustum": {"height": 1.0},
     "relief.shadowing.shadow": SEEN,
     "torus": {"radii": (1.0, 0.5)},
-    "torus_curve": {"resolution": 16},
     "seeds": {"points": CORNERS},
     "depth_map": {"points": CORNERS},
     "Polyhedron": {"points": CORNERS, "triangles": FACES},
     "polyline_tangents": {"points": np.cumsum(unit(5, 3), axis=0)},
-    "parametric.parametric": {"function": lambda u, v=0.5: (np.cos(u), np.sin(u), v, u * v)},
+    "manifolds.parametric": {"function": lambda u, v=0.5: (np.cos(u), np.sin(u), v, u * v)},
     "image_and_depth": IN_4,
     "perspective": IN_4,
     "push_forward": IN_4 | {"vectors": unit(5, 1, 4)},
@@ -347,7 +345,7 @@ BESIDE = (
 )  # fmt: skip
 #: Public classes that only vizlight makes, which are records, or what others derive from.
 RETURNED = {
-    "geometry.contours.banding.Bands", "geometry.contours.banding.Laminae",
+    "geometry.contours.banding.Bands",
     "observers.figures.Legibility", "model.cylinder.Gradient", "model.highlights.MaximumError",
     "draw.backends.Probe", "pieces.run.Lit", "draw.testing.Difference",
     "draw.snapshots.same_picture", "draw.component.Component", "draw.paraview.Shader",
@@ -444,9 +442,6 @@ PUBLIC = public()
 
 #: Objects whose methods are called, by the end of a callable's name.
 SELF = {
-    "Laminae.order": lambda: vizlight.geometry.isoluminance.sphere(
-        (0, 0, 0), 1.0, direction=UP, levels=4, form="laminae"
-    ),
     "Component.add_key": lambda: plotter().vizlight,
     "Component.show_key": lambda: plotter().vizlight,
     **{
@@ -490,7 +485,7 @@ ALIASES = {
 MARKED = {
     "model.half_vector.identity": ("^result$", "NaN where a vector is zero or not finite"),
     "model.half_vector.reflection": ("^result$", "NaN where a vector is zero or not finite"),
-    "geometry.nspace.parametric.Manifold": (
+    "geometry.nspace.manifolds.Manifold": (
         r"^\.(points|frame)$", "Numbers that are not finite are kept",
     ),
     "geometry.nspace.projection.image_and_depth": (

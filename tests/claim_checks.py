@@ -14,7 +14,7 @@ from studies import normals, sky
 from vizlight import View, streamlines
 from vizlight.geometry import relief
 from vizlight.geometry.lines.curves import polyline_tangents
-from vizlight.geometry.nspace import parametric
+from vizlight.geometry.nspace import manifolds
 from vizlight.geometry.relief import height_field
 from vizlight.mesh import georeference
 from vizlight.model import formulas, highlights
@@ -273,7 +273,7 @@ def errors_of_differences(random):
         def wave(u, phase=phase, kind=kind):
             return np.stack([u, np.sin(u + phase)]).astype(kind)
 
-        made = parametric.parametric(wave, [(0, 2 * np.pi)], 2, resolution=200, closed=False)
+        made = manifolds.parametric(wave, [(0, 2 * np.pi)], 2, resolution=200, closed=False)
         slope = np.cos(np.asarray(made.points[:, 0], float) + float(phase))
         true = np.stack([np.ones_like(slope), slope], axis=1) / np.hypot(1, slope)[:, np.newaxis]
         found.append((stated, np.abs(np.asarray(made.frame[:, 0], float) - true).max()))

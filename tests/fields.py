@@ -3,7 +3,7 @@
 import numpy as np
 import pyvista as pv
 
-from vizlight.geometry.relief import height_field, walks
+from vizlight.geometry.relief import height_field, shadowing
 
 X, Y = np.arange(9.0) * 0.5 + 2, np.arange(7.0) * 0.25 - 1
 
@@ -77,7 +77,7 @@ def by_cells(field, start, way):
     bounds = height_field.Bounds(
         np.append(largest[:size], largest[-1]), least[:size], np.zeros(1, int), columns[:1]
     )
-    return followed(walks.march, field, start, way, bounds)
+    return followed(shadowing.march, field, start, way, bounds)
 
 
 def followed(follow, field, start, way, bounds=None):
@@ -85,7 +85,7 @@ def followed(follow, field, start, way, bounds=None):
     count = start.shape[1]
     found, ways = np.empty(count), np.repeat(way[:, None], count, axis=1)
     follow(
-        start, ways, np.full(count, walks.FAR), *field.edges, field.corners,
+        start, ways, np.full(count, shadowing.FAR), *field.edges, field.corners,
         field.bounds if bounds is None else bounds, field.border == "wall", found,
     )  # fmt: skip
     return found

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from vizlight import _compiled
-from vizlight.geometry.relief import walks
+from vizlight.geometry.relief import shadowing
 
 #: A module with two kernels, one of which calls the other.
 MODULE = """
@@ -243,7 +243,7 @@ def test_generated_code_is_kept(home):
     assert again.start_up() <= _compiled.READ
 
 
-@pytest.mark.parametrize("own", [walks.walk])
+@pytest.mark.parametrize("own", [shadowing.walk])
 def test_a_first_call_takes_at_most_twice_the_time_of_numpy(own, monkeypatch, tmp_path):
     """Without a cache, a kernel is compiled only if the call wins half of that back."""
     pytest.importorskip("numba")

@@ -13,8 +13,8 @@ import pyvista as pv
 from lamps import SHINY, far
 
 import vizlight
+from studies import _shapes as manifolds
 from vizlight import DepthCue, Light, Material, Scene, View, render, testing
-from vizlight.geometry import manifolds
 from vizlight.model import highlights
 
 pytestmark = pytest.mark.opengl

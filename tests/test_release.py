@@ -59,7 +59,8 @@ def test_the_wheel_holds_what_runs(wheel):
     names = set(wheel.namelist())
     data = {f"vizlight/datasets/{p.name}" for p in (ROOT / "datasets").glob("*.vt?")}
     web = {f"vizlight/draw/web/{name}" for name in ("gl.js", "app.js", "page.css", "page.html")}
-    assert data | web | {"vizlight/py.typed"} <= names
+    shaders = {f"vizlight/draw/{name}.glsl" for name in ("power", "shadow")}
+    assert data | web | shaders | {"vizlight/py.typed"} <= names
     code = {p.relative_to(ROOT).as_posix() for p in (ROOT / "vizlight").rglob("*.py")}
     assert {name for name in names if name.endswith(".py")} == code
     assert {name.partition("/")[0] for name in names} == {"vizlight", INFO}

@@ -17,7 +17,6 @@ TIERS = [
         "_check",
         "_cache",
         "_compiled",
-        "_context",
         "_pool",
         "_progress",
         "_questions",

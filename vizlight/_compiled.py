@@ -28,7 +28,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Generic, ParamSpec, TypeVar
 
 from vizlight import _cache, _check
-from vizlight._context import assigned
+from vizlight._pool import assigned
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

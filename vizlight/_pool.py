@@ -2,22 +2,35 @@
 
 from __future__ import annotations
 
+import contextlib
 import contextvars
 import os
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from vizlight import _check
-from vizlight._context import assigned
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from contextlib import AbstractContextManager
 
     from vizlight._types import Slice
+
+T = TypeVar("T")
+
+
+@contextlib.contextmanager
+def assigned(variable: contextvars.ContextVar[T], value: T) -> Iterator[None]:
+    """Give a variable a value while this context is entered."""
+    token = variable.set(value)
+    try:
+        yield
+    finally:
+        variable.reset(token)
+
 
 #: Size in bytes of a piece of memory that is freed before the first blocks run.
 PIECE = (1 << 25) - (1 << 20)

@@ -15,7 +15,7 @@ import time
 import uuid
 import zlib
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -219,7 +219,7 @@ def read(
     if cf_grids.is_grid(path):
         return cf_grids.of_dataset(path, time, at, nodata)
     with _check.held():
-        return _read(path, time, overlay, at, nodata, whole=True)[0]
+        return _read(_path("file", path), _selection(time, overlay, at, nodata))[0]
 
 
 def read_parts(
@@ -252,40 +252,40 @@ def read_parts(
     """
     nodata = _check_selection(time, at, nodata)
     with _check.held():
-        return _read(path, time, overlay, at, nodata, whole=False)
+        file, selection = _path("file", path), _selection(time, overlay, at, nodata)
+        return _read(file, selection._replace(whole=False))
 
 
-def _read(
-    path: str | Path | Foreign,
-    time: float | str | None,
-    overlay: str | Path | Sequence[str | Path],
-    at: Mapping[str, object] | None = None,
-    nodata: float | None = None,
-    *,
-    whole: bool,
-) -> list[pv.DataSet]:
+class Selection(NamedTuple):
+    """Part of a file, by options of :func:`read`; ``whole`` is False for :func:`read_parts`."""
+
+    time: float | str | None = None
+    overlays: Sequence[Path] = ()
+    at: Mapping[str, object] | None = None
+    nodata: float | None = None
+    whole: bool = True
+
+
+def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
     """Return the meshes of a file, or the one with cells of the highest dimension."""
-    path = _path("file", path)
-    overlay_list = overlay if isinstance(overlay, list | tuple) else [overlay]
-    overlays = [_path("overlay", name) for name in overlay_list]
-    _check_there(path, overlays)
+    _check_there(path, selection.overlays)
     inner = Path(path.stem).suffix.lower()
     if path.suffix.lower() in _UNPACK and inner and inner not in _PACKED_ALIKE:
-        return _unpacked(path, lambda file: _read(file, time, overlays, at, nodata, whole=whole))
+        return _unpacked(path, lambda file: _read(file, selection))
     reason, notes = "no points", list[str]()
     meshes: list[Foreign] = []
     limit = _supervise.read_limit(path.stat().st_size)
     reading = _supervise.stage("read", path, seconds=limit)
     # Damaged numbers overflow in readers, which say what is wrong beside that.
     with reading, messages.captured_errors() as errors, np.errstate(all="ignore"):
-        _check_before(path, time, overlays, at, nodata, whole=whole)
+        _check_before(path, selection)
         try:
-            data: Foreign = _found(path, time, at, nodata)
+            data: Foreign = _found(path, selection.time, selection.at, selection.nodata)
             if _faults(errors):
                 # Its cells may end the process.
                 meshes = [block for block in blocks.all_blocks(data) if block.n_points]
             else:
-                meshes = _meshes(data, path, overlays, time, notes, whole=whole)
+                meshes = _meshes(data, path, selection, notes)
                 for mesh in meshes:
                     meaning.name_by_file(mesh, path)
         except series.NoStepError:
@@ -316,44 +316,28 @@ def _read(
     return meshes
 
 
-def _check_before(
-    path: Path,
-    time: float | str | None,
-    overlays: Sequence[Path],
-    at: Mapping[str, object] | None,
-    nodata: float | None,
-    *,
-    whole: bool,
-) -> None:
+def _check_before(path: Path, selection: Selection) -> None:
     """Raise FileError for a file that may end the process inside its reader."""
     if short := short_files.missing_part(path):
         raise _damaged(path, short)
     if _trials.are_needed():
-        if path.suffix.lower() in GUARDED and not overlays:
+        if path.suffix.lower() in GUARDED and not selection.overlays:
             return
         foreign_files.load(path)
-        tried = functools.partial(_refusal, path, time, overlays, at, nodata, whole=whole)
+        tried = functools.partial(_refusal, path, selection)
         if refusal := _trials.refusal(tried, path, _size(path)):
             raise FileError(refusal)
     elif path.suffix.lower() in GRID_PIECES:
         # VTK ends the process where a piece of a grid has an error.
         for piece in references.named(path):
-            _read(piece, None, (), whole=True)
+            _read(piece, Selection())
 
 
-def _refusal(
-    path: Path,
-    time: float | str | None,
-    overlays: Sequence[Path],
-    at: Mapping[str, object] | None,
-    nodata: float | None,
-    *,
-    whole: bool,
-) -> str:
+def _refusal(path: Path, selection: Selection) -> str:
     """Return why a file is refused, or "" where it is read, or where its caller is at fault."""
     try:
         with _check.held():
-            _read(path, time, overlays, at, nodata, whole=whole)
+            _read(path, selection)
     except FileError as error:
         return str(error)
     except Exception:  # noqa: BLE001 - of any type: it is raised again where the file is read
@@ -381,22 +365,14 @@ def _is_file(path: Path) -> bool:
     return False
 
 
-def _meshes(
-    data: Foreign,
-    path: Path,
-    overlays: Sequence[Path],
-    time: object,
-    notes: list[str],
-    *,
-    whole: bool,
-) -> list[Foreign]:
+def _meshes(data: Foreign, path: Path, selection: Selection, notes: list[str]) -> list[Foreign]:
     """Return the meshes of the contents of a file, whose blocks are checked."""
     for block in blocks.all_blocks(data):
         # Before blocks are joined, since joining reads their cells.
         _check_block(block, path)
-    several = isinstance(data, pv.MultiBlock) and not whole
+    several = isinstance(data, pv.MultiBlock) and not selection.whole
     return [
-        _whole(part, path.suffix.lower(), () if i else overlays, time, notes)
+        _whole(part, path.suffix.lower(), () if i else selection.overlays, selection.time, notes)
         for i, part in enumerate(blocks.by_dimension(data) if several else [data])
     ]
 
@@ -408,6 +384,17 @@ def _faults(errors: list[str]) -> list[str]:
     """
     harmless = _DIRECTIVE.search, _HARMLESS.search
     return [error for error in errors if not any(search(error) for search in harmless)]
+
+
+def _selection(
+    time: float | str | None,
+    overlay: str | Path | Sequence[str | Path],
+    at: Mapping[str, object] | None,
+    nodata: float | None,
+) -> Selection:
+    """Return the part of a file that checked options name."""
+    overlays = overlay if isinstance(overlay, list | tuple) else [overlay]
+    return Selection(time, [_path("overlay", name) for name in overlays], at, nodata)
 
 
 def _check_selection(time: object, at: object, nodata: object) -> float | None:

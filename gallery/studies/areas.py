@@ -18,9 +18,8 @@ import pyvista as pv
 from PIL import Image, ImageDraw
 
 import vizlight
-from studies import Curve, Row, Study, take_turns
+from studies import Curve, Row, Study, _laminae, take_turns
 from vizlight import Light, Material, Scene
-from vizlight.geometry import isoluminance
 
 POWER, LEVELS = 8.0, 200
 LAMP = np.array([0.48, 0.64, 0.6])
@@ -73,11 +72,11 @@ def laminae(shape):
     """Return the laminae of a shape."""
     options = {
         "direction": LAMP, "power": POWER, "ambient": AMBIENT, "diffuse": 1 - AMBIENT,
-        "levels": LEVELS, "form": "laminae",
+        "levels": LEVELS,
     }  # fmt: skip
     if shape == "sphere":
-        return isoluminance.sphere((0, 0, 0), 1.0, **options)
-    return isoluminance.truncus((0, 0, 0), AXIS, (0.0, RADIUS), height=HEIGHT, **options)
+        return _laminae.sphere((0, 0, 0), 1.0, **options)
+    return _laminae.truncus((0, 0, 0), AXIS, (0.0, RADIUS), height=HEIGHT, **options)
 
 
 def composite():

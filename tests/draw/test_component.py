@@ -12,10 +12,10 @@ from lamps import SHINY
 from shapes import ball
 
 import vizlight
+from studies import _shapes as manifolds
 from vizlight import DepthCue, Light, Material, Scene, View, presets
 from vizlight.draw import component
 from vizlight.draw.live import COLORS, LUMINANCE, scene_of
-from vizlight.geometry import manifolds
 from vizlight.geometry.lines import bundle
 from vizlight.shading.display import displayable
 

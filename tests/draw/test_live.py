@@ -9,8 +9,8 @@ from lamps import NEAR, SHINY, far, shiny
 from vectors import parts, unit
 
 import vizlight
+from studies import _shapes as manifolds
 from vizlight import DepthCue, Light, Material, Scene, View
-from vizlight.geometry import manifolds
 
 pytestmark = pytest.mark.opengl
 

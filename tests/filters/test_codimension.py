@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import vizlight
+from studies import _shapes as manifolds
 from vizlight import Light, Material, Scene
-from vizlight.geometry import manifolds
 
 LIGHT = np.array([0.7, 0.6, 0.38, 0.0])
 #: The curve advances as fast along one circle as along the other.

@@ -7,8 +7,8 @@ from lamps import far
 from refusals import refusals
 
 import vizlight
+from studies import _shapes as manifolds
 from vizlight import Light, Scene, View
-from vizlight.geometry import manifolds
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ import numpy as np
 import oracles
 
 from stability.checks import DOUBLE, Check, exactly, off, refused, timed
+from studies import _shapes as manifolds
 from vizlight.geometry.contours import isoluminance
-from vizlight.geometry.nspace import manifolds
 
 #: Largest number of shapes that share the inputs of a check, and least number of inputs of one.
 SHAPES, INPUTS = 8, 60

@@ -142,8 +142,8 @@ def test_hard_directions_are_where_they_say(random):
 
 #: Docstrings that speak of eps and are no claim of the table, and why.
 UNTOLD = {
-    "parametric.central_step": "a step, not an error",
-    "parametric.parametric": "of any function: the register of claims has a sine",
+    "manifolds.central_step": "a step, not an error",
+    "manifolds.parametric": "of any function: the register of claims has a sine",
 }
 
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from vizlight._types import Array, Bools, Indices, Keywords
-    from vizlight.geometry.contours.banding import Bands, Laminae
+    from vizlight.geometry.contours.banding import Bands
     from vizlight.geometry.contours.spacing import Levels
     from vizlight.geometry.solids.triangle_mesh import Mesh
     from vizlight.model.reflection import SpecularModel
@@ -236,7 +236,6 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
     # With ambient and diffuse light alone there are closed forms, and the ambient term is the
     # least.
     dull = (scene.material.specular == 0 or scene.view is None) and scene.depth_cue is None
-    closed_form: Bands | Laminae | None = None
     plain = dull and len(scene.lights) == 1
     if plain and isinstance(solid, Sphere | Frustum):
         # A light that follows the view has a fixed direction or position only in that view.
@@ -247,14 +246,12 @@ def _of_solid(solid: Solid, light: _Light) -> Bands:
             "attenuation": lamp.attenuation, "levels": options.levels,
         }  # fmt: skip
         if isinstance(solid, Sphere):
-            closed_form = closed.sphere(solid.center, solid.radius, **source)
+            return closed.sphere(solid.center, solid.radius, **source)
         # A frustum has a closed form for parallel light alone.
-        if isinstance(solid, Frustum) and lamp.direction is not None:
-            closed_form = closed.truncus(
+        if lamp.direction is not None:
+            return closed.truncus(
                 solid.center, solid.axis, solid.radii, height=solid.height, **source
             )
-    if isinstance(closed_form, banding.Bands):
-        return closed_form
     # Without a closed form the bands are refined on triangles of the exact surfaces.
     light.shape = tessellation.tessellate(solid, tolerance=options.tolerance)
     return refinement.draw(

@@ -9,7 +9,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight.filters.project import ProjectOptions, project
-from vizlight.geometry.nspace.parametric import Manifold
+from vizlight.geometry.nspace.manifolds import Manifold
 from vizlight.mesh.blocks import polydata
 from vizlight.mesh.nspace import FRAME, POSITION
 from vizlight.scene.keywords import named
@@ -84,7 +84,7 @@ def manifold(
     --------
     >>> import vizlight
     >>> from vizlight.geometry import manifolds
-    >>> mesh = vizlight.manifold(manifolds.clifford_torus(resolution=16), distance=2.0)
+    >>> mesh = vizlight.manifold(manifolds.torus(1.0, 1.0, resolution=16), distance=2.0)
     >>> mesh["position"].shape, mesh["frame"].shape
     ((256, 4), (256, 8))
     """

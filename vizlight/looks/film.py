@@ -19,7 +19,7 @@ from vizlight.looks.recipes.drawing import GROUND, ON_BANDS, ON_GROUND, colors_i
 from vizlight.looks.steps import Step, in_order
 from vizlight.looks.wishes import Wishes
 from vizlight.mesh import meaning, series
-from vizlight.mesh.drift import Drift
+from vizlight.mesh.particles import Drift
 from vizlight.model import kernels
 
 if TYPE_CHECKING:

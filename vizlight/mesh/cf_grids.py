@@ -1250,7 +1250,7 @@ def _once_around(ticks: Array, order: Indices, written: Array) -> Indices:
 
 
 def _straight(lon: Array, lat: Array) -> tuple[Array, Array] | None:
-    """Return the longitudes of columns and the latitudes of rows, if that is what they are."""
+    """Return the longitudes of columns and the latitudes of rows, if they are those."""
     if not (np.isfinite(lon).all() and np.isfinite(lat).all()):
         return None
     bend = max(np.abs(lon - lon[:1]).max(), np.abs(lat - lat[:, :1]).max())

@@ -26,7 +26,7 @@ LISTED = 6
 
 
 class Joined(NamedTuple):
-    """A grid of several datasets, and what became of their arrays.
+    """A grid of several datasets, with notes on their arrays.
 
     Attributes
     ----------

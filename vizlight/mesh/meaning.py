@@ -1,4 +1,4 @@
-"""What the arrays and axes of a grid mean, and what was assumed of its file, kept with the mesh."""
+"""The meaning of arrays and axes of a grid, and assumptions on its file, kept with the mesh."""
 
 from __future__ import annotations
 

@@ -277,7 +277,7 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
 def split_or_normals(
     mesh: pv.PolyData, angle: float | Literal["auto"]
 ) -> tuple[pv.PolyData, Sided | None]:
-    """Return what :func:`split_edges` does, and its normals, None where they are found later."""
+    """Return the mesh of :func:`split_edges` and its normals, None where they are found later."""
     split = split_edges(mesh, angle)
     if not has_faces(mesh) or not mesh.n_points:
         return split, None

@@ -13,9 +13,9 @@ from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.verify.between import Places, are_unit
 from vizlight.vtk import hull, polylines
-from vizlight.vtk.bezier import as_lagrange
 from vizlight.vtk.cells import connectivity, has_faces
 from vizlight.vtk.cells import triangles as triangles_of
+from vizlight.vtk.hull import as_lagrange
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -10,7 +10,7 @@ from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from vizlight import _check
-from vizlight.geometry.lines import even, evenness, fur, tracing
+from vizlight.geometry.lines import even, fur, tracing
 from vizlight.geometry.lines.simplices import CellPlaces, Simplices
 from vizlight.geometry.lines.tracing import AT_REST, Curves, Flow, Tracing, trace
 from vizlight.mesh import polylines
@@ -196,7 +196,7 @@ class CellTracer:
             seeds=seeds,
             report=lambda done: report(100 * done // total),
         )
-        gap, near = evenness.evenness(self.flow, spacing, curves)
+        gap, near = even.evenness(self.flow, spacing, curves)
         return curves, {"largest_gap": gap, "nearest": near, "closed": closed}
 
     def lines(self, curves: Curves, unsigned: Vectors | None = None) -> pv.PolyData:

@@ -103,29 +103,6 @@ def test_far_from_the_origin_and_of_any_type(dtype):
 def test_a_sphere_of_radius_0_has_no_cells():
     bands = sphere((1, 2, 3), 0, direction=(0, 0, 1))
     assert len(bands.points) == len(bands.values) == len(bands.lines) == 0
-    assert len(sphere((1, 2, 3), 0, direction=(0, 0, 1), form="laminae").values) == 0
-
-
-def test_laminae_from_the_light_from_behind_and_across(random):
-    """Painted farthest first, the last lamina that covers a pixel shows its value."""
-    toward = np.array([0.0, 0, 1])
-    laminae = sphere((0, 0, 0), 1.0, direction=toward, levels=10, form="laminae", segments=200)
-    circles = laminae.points.reshape(-1, 200, 3)
-    np.testing.assert_allclose(circles[:, :, 2], circles[:, :1, 2] + 0 * circles[:, :, 2])
-    pixel = random.uniform(-0.7, 0.7, (400, 2))
-    pixel = pixel[np.hypot(*pixel.T) < 0.98]
-    r = np.linalg.norm(circles[:, 0, :2], axis=1) * np.cos(np.pi / 200)
-    for eye, exact in (
-        (toward, np.sqrt(1 - np.sum(pixel**2, axis=1))),
-        (-toward, np.zeros(len(pixel))),
-    ):
-        shown = np.full(len(pixel), np.nan)
-        for i in laminae.order(eye):
-            shown[np.hypot(*pixel.T) < r[i]] = laminae.values[i]
-        assert np.nanmax(np.abs(shown - exact)) <= 0.05 + 1e-3
-        assert np.isnan(shown).sum() <= len(pixel) * 0.01
-    # From a direction normal to the axis each lamina is seen as a line: nothing is drawn.
-    assert np.ptp(circles[:, :, 2], axis=1).max() < 1e-12
 
 
 def test_virtual_light_is_exact_for_the_half_vector(random):
@@ -166,7 +143,6 @@ test_bad_input = refusals(
     ({"direction": (0, 0, 1), "attenuation": (1, 1, 0)}, "attenuation: expected a"),
     ({"direction": (0, 0, 1), "power": -1}, "power: expected"),
     ({"direction": (0, 0, 1), "segments": 2}, "segments: expected an integer"),
-    ({"direction": (0, 0, 1), "form": "strips"}, "form: expected 'bands'"),
     ({"direction": (0, 0, 1), "levels": 0}, "levels: expected"),
 )
 

@@ -149,24 +149,6 @@ def test_an_allowed_error():
     assert near.error <= 0.02
 
 
-def test_laminae_hold_no_empty_one_and_close_the_far_side():
-    laminae = made("frustum", direction=(1, -2, 0.5), levels=8, form="laminae")
-    quads = [
-        laminae.points[a:b] for a, b in zip(laminae.offsets, laminae.offsets[1:], strict=False)
-    ]
-    for quad in quads:
-        assert np.linalg.norm(np.cross(quad[1] - quad[0], quad[2] - quad[0])) > 1e-6
-        # Each lamina is plane, as the source states.
-        rel = quad - quad[0]
-        assert np.linalg.svd(rel)[1][2] < 1e-12
-    side = np.array([q.mean(axis=0) for q in quads[:-2]])
-    light = np.array([1, -2, 0.5]) - (np.array([1, -2, 0.5]) @ AXIS) * AXIS
-    assert (side @ light).min() < -0.4 * np.abs(side @ light).max()
-    assert laminae.values[-2] == pytest.approx(
-        max(0.1, 0.1 + 0.8 * (AXIS @ (1, -2, 0.5)) / np.sqrt(5.25))
-    )
-
-
 test_bad_input = refusals(
     lambda arguments, options: truncus(*arguments, direction=(0, 0, 1), **options),
     (((0, 0, 0), (0, 0, 0), (1, 1)), {}, "axis: expected a vector of non-zero length"),
@@ -174,7 +156,6 @@ test_bad_input = refusals(
     (((0, 0, 0), (0, 0, 1), (1, 1, 1)), {}, "radii: expected two radii"),
     (((0, 0, 0), (0, 0, 1), (1, 1)), {"height": -1}, "height: expected"),
     (((0, 0, 0), (0, 0, 1), (1, 1)), {"method": "lines"}, "method: expected 'rulings'"),
-    (((0, 0, 0), (0, 0, 1), (1, 1)), {"method": "curves", "form": "laminae"}, "method: expected"),
 )
 
 

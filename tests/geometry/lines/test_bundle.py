@@ -6,7 +6,7 @@ from vectors import unit
 
 import vizlight
 from vizlight import _compiled
-from vizlight.geometry.lines import bundle, voxels
+from vizlight.geometry.lines import bundle
 
 
 def pieces(middles, tangents, length, voxel):
@@ -254,16 +254,16 @@ def test_compiled_and_plain_grids_agree(monkeypatch):
     cells = (rng.uniform(size=(3, 5000)) * (np.array(shape)[:, None] - 2)).astype(np.float32)
     values = rng.uniform(size=5000).astype(np.float32)
     monkeypatch.setenv("VIZLIGHT_FAST", "0")
-    grid = voxels.spread(cells, values, shape)
-    seen = voxels.read(grid, cells)
+    grid = bundle.spread(cells, values, shape)
+    seen = bundle.read(grid, cells)
     assert grid.sum() == pytest.approx(values.sum(), rel=1e-5)
     corner = np.array([[2.0], [3.0], [4.0]], np.float32)
-    assert voxels.read(grid, corner)[0] == grid[2, 3, 4]
+    assert bundle.read(grid, corner)[0] == grid[2, 3, 4]
     if _compiled._missing():
         pytest.skip("numba is not installed")
     monkeypatch.setenv("VIZLIGHT_FAST", "1")
-    np.testing.assert_allclose(voxels.spread(cells, values, shape), grid, rtol=1e-4, atol=1e-5)
-    np.testing.assert_allclose(voxels.read(grid, cells), seen, rtol=1e-5)
+    np.testing.assert_allclose(bundle.spread(cells, values, shape), grid, rtol=1e-4, atol=1e-5)
+    np.testing.assert_allclose(bundle.read(grid, cells), seen, rtol=1e-5)
 
 
 def test_lines_that_are_odd():

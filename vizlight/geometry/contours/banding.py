@@ -10,12 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight import _check
-
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
 
     from vizlight._types import Array, Bools, Indices, Slice
     from vizlight.geometry.contours.spacing import LuminanceSteps
@@ -110,50 +106,6 @@ class Bands:
         first = self.offsets[owner]
         parts = [self.corners[first + step] for step in (0 * turn, turn + 1, turn + 2)]
         return np.stack(parts, axis=1), owner
-
-
-@dataclass(frozen=True)
-class Laminae:
-    """Plane polygons that are painted over one another, the farthest first.
-
-    Attributes
-    ----------
-    points : ndarray of float64, shape (P, 3)
-        Positions.
-    offsets : ndarray of int, shape (C + 1,)
-        Start of each lamina in ``points``: lamina i has the points ``offsets[i]`` to
-        ``offsets[i + 1]``, in cyclic order.
-    values : ndarray of float64, shape (C,)
-        Luminance of each lamina.
-    """
-
-    points: Array
-    offsets: Indices
-    values: Array
-
-    def order(self, toward: ArrayLike) -> Indices:
-        """Return the painter's order for a view: the farthest lamina first.
-
-        Parameters
-        ----------
-        toward : array_like, shape (3,)
-            Direction toward the eye of a parallel view.
-
-        Returns
-        -------
-        ndarray of int, shape (C,)
-            Indices of laminae, sorted by the depth of their centres. If the view direction lies
-            in the planes of the laminae, each is seen as a line and no order is right: use bands.
-
-        Raises
-        ------
-        TypeError, ValueError
-            If the direction is not one finite vector of 3 components that is not 0.
-        """
-        size = np.diff(self.offsets)
-        lamina = np.repeat(np.arange(len(size)), size)
-        depth = self.points @ _check.unit("toward", toward)
-        return np.argsort(np.bincount(lamina, depth, len(size)) / np.maximum(size, 1))
 
 
 def cut(

@@ -14,20 +14,19 @@ import numpy as np
 from vizlight import _check
 from vizlight.geometry import axial
 from vizlight.geometry.contours import banding, refinement, spacing
-from vizlight.geometry.contours.banding import Bands, Laminae
+from vizlight.geometry.contours.banding import Bands
 from vizlight.geometry.solids import primitives, triangle_mesh
 from vizlight.model import kernels
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Foreign, Indices, VectorLike
+    from vizlight._types import Array, Indices, VectorLike
     from vizlight.geometry.contours.refinement import Luminance
     from vizlight.geometry.contours.spacing import Levels, LuminanceSteps
 
-__all__ = ["Bands", "Laminae", "sphere", "truncus", "virtual_light"]
+__all__ = ["Bands", "sphere", "truncus", "virtual_light"]
 
-Form = Literal["bands", "laminae"]
 Method = Literal["rulings", "curves"]
 
 
@@ -44,8 +43,7 @@ def sphere(
     attenuation: VectorLike = (1.0, 0.0, 0.0),
     levels: Levels = 16,
     segments: int | None = None,
-    form: Form = "bands",
-) -> Foreign:
+) -> Bands:
     """Return the isoluminance contours of a sphere: circles of latitude about the light.
 
     Parameters
@@ -71,14 +69,11 @@ def sphere(
     segments : int, optional
         Number of points per circle, 3 or more. Default: the number with which chords instead of
         circles add at most 5 % of half a step.
-    form : {"bands", "laminae"}
-        Form of the result. Bands are a closed surface; laminae are filled circles, to be painted
-        by :meth:`Laminae.order`.
 
     Returns
     -------
-    Bands or Laminae
-        Contours, and the parts of the surface between them.
+    Bands
+        Contours, and the parts of the closed surface between them.
 
     Raises
     ------
@@ -104,15 +99,13 @@ def sphere(
         solid.center, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
         power=power, attenuation=attenuation,
     )  # fmt: skip
-    segments = _options(segments, form)
-    latitudes = _Latitudes(light, solid)
+    segments = _checked(segments)
+    latitudes = Latitudes(light, solid)
     # Between the unlit side and the point nearest to the light.
     steps = spacing.steps(levels, light.low, float(latitudes.luminance(0.0)))
     # The value of q of each contour, the terminator first.
     places = axial.reached(latitudes.luminance, steps.edges[:-1], latitudes.dark)
-    count, error = _round(latitudes, steps, places, levels, segments)
-    if form == "laminae":
-        return _laminae(latitudes, steps, places, count)
+    count, error = roundness(latitudes, steps, places, levels, segments)
     return _bands(latitudes, steps, places, count, error)
 
 
@@ -161,13 +154,12 @@ def virtual_light(center: VectorLike, /, *, light: object, eye: object) -> Array
     return np.asarray(total / math.hypot(*total))
 
 
-def _options(segments: int | None, form: Form) -> int | None:
-    """Validate the number of segments of a circle and the form of the result."""
-    _check.choice("form", form, get_args(Form))
+def _checked(segments: int | None) -> int | None:
+    """Validate the number of segments of a circle."""
     return None if segments is None else _check.integer("segments", segments, low=3)
 
 
-class _Latitudes:
+class Latitudes:
     """Luminance of a sphere as a function of q, sin^2 of half the angle to the light."""
 
     def __init__(self, light: axial.ShapeLight, solid: primitives.Sphere) -> None:
@@ -209,8 +201,8 @@ class _Latitudes:
         return np.asarray(self.solid.center + self.solid.radius * points.reshape(-1, 3))
 
 
-def _round(
-    latitudes: _Latitudes,
+def roundness(
+    latitudes: Latitudes,
     steps: LuminanceSteps,
     places: Array,
     wanted: Levels,
@@ -248,7 +240,7 @@ def _filled(places: Array, segments: int) -> tuple[Array, Indices]:
 
 
 def _bands(
-    latitudes: _Latitudes, steps: LuminanceSteps, places: Array, count: int, error: float
+    latitudes: Latitudes, steps: LuminanceSteps, places: Array, count: int, error: float
 ) -> Bands:
     """Return the closed surface: caps at both poles and strips between circles."""
     solid, toward = latitudes.solid, latitudes.light.toward
@@ -290,24 +282,6 @@ def _bands(
     )
 
 
-def _laminae(latitudes: _Latitudes, steps: LuminanceSteps, places: Array, count: int) -> Laminae:
-    """Return filled circles of the lit side, and their mirror images for the unlit side."""
-    inside = places > 0
-    lit = places[inside]
-    # The unlit side begins with a circle just behind the widest lit one, which it hides when seen
-    # from behind; its other circles are as far apart as on the lit side.
-    beyond = np.concatenate([[max(latitudes.dark, 0.5) + 1e-9], 1 - lit[lit < 0.5]])
-    q = np.concatenate([lit, beyond])
-    values = np.concatenate([steps.values[1:][inside], np.full(len(beyond), steps.edges[0])])
-    if latitudes.solid.empty:
-        q, values = q[:0], values[:0]
-    return Laminae(
-        points=latitudes.circles(q, count),
-        offsets=np.arange(len(q) + 1) * count,
-        values=values,
-    )
-
-
 def truncus(
     center: VectorLike,
     axis: VectorLike,
@@ -323,9 +297,8 @@ def truncus(
     attenuation: VectorLike = (1.0, 0.0, 0.0),
     levels: Levels = 16,
     segments: int | None = None,
-    form: Form = "bands",
     method: Method | None = None,
-) -> Foreign:
+) -> Bands:
     """Return the isoluminance contours of a frustum: rulings of its side, and its two ends.
 
     Parameters
@@ -348,18 +321,14 @@ def truncus(
         infinity each end has one exact value.
     segments : int, optional
         Smallest number of points on the circle of an end, 3 or more. Default: 36.
-    form : {"bands", "laminae"}
-        Form of the result. Bands are a closed surface; laminae are quadrilaterals and the two
-        ends, to be painted by :meth:`Laminae.order`.
     method : {"rulings", "curves"}, optional
         Treatment of a near light. Rulings replace it by a light at infinity in its direction from
-        the centre, which is the source's approximation. Curves are found by halving edges and are
-        right for the position of the light, also on the ends. Default: curves for bands, rulings
-        for laminae.
+        the centre, which is the source's approximation. Curves, the default, are found by halving
+        edges and are right for the position of the light, also on the ends.
 
     Returns
     -------
-    Bands or Laminae
+    Bands
         Contours; patches 0, 1 and 2 are the side, the first end and the second end.
 
     Raises
@@ -375,9 +344,6 @@ def truncus(
     two radii of 0 lead to a division by zero. With phi the angle around the axis from the light,
     ``N . L = A cos(phi) + B``: each level has two rulings, which are exact for a light at infinity.
 
-    The source's laminae for ``0 <= i < N`` begin with a lamina without area and never close the
-    far side; here they are the chords through both rulings of each contour, on both sides.
-
     The luminance at a ruling differs from its level by at most ``(8 + 4 power) eps`` of
     ``diffuse``, plus ``H / max(R1, R2) eps`` from the rotation of rulings by rounding of long thin
     shapes. For powers below 1, infinitely steep at the terminator, the bound is
@@ -389,13 +355,10 @@ def truncus(
         solid.center, direction=direction, position=position, ambient=ambient, diffuse=diffuse,
         power=power, attenuation=attenuation,
     )  # fmt: skip
-    segments = _options(segments, form) or axial.FEWEST
+    segments = _checked(segments) or axial.FEWEST
     if method is None:
-        method = "curves" if position is not None and form == "bands" else "rulings"
+        method = "rulings" if position is None else "curves"
     _check.choice("method", method, get_args(Method))
-    if method == "curves" and form == "laminae":
-        remedy = "use form='bands' or method='rulings'"
-        raise ValueError(_check.message("method", "'rulings' with laminae", "'curves'", remedy))
     # A near lamp has another direction at each point: no ruling has one luminance any more.
     if method == "curves":
         return refinement.draw(
@@ -406,13 +369,11 @@ def truncus(
     if math.isfinite(light.distance):
         fading = light.luminance(np.array(1.0), light.distance) - light.low
         light = dataclasses.replace(light, scale=float(fading), distance=math.inf)
-    side = _Rulings(light, solid)
+    side = Rulings(light, solid)
     ends = side.luminance(np.array([0.0, np.pi]))
     steps = spacing.steps(levels, float(ends.min()), float(ends.max()), exact=True)
     # The angle of each contour, in [0, pi]; the lowest level is the terminator.
     places = axial.reached(side.luminance, steps.edges[:-1], np.pi)
-    if form == "laminae":
-        return _chords(side, steps, places, segments)
     return _ruled_bands(side, steps, places, segments)
 
 
@@ -431,7 +392,7 @@ def shade(light: axial.ShapeLight, center: Array) -> Luminance:
     return luminance
 
 
-class _Rulings:
+class Rulings:
     """Luminance of the side of a frustum as a function of the angle around its axis."""
 
     def __init__(self, light: axial.ShapeLight, solid: primitives.Frustum) -> None:
@@ -468,7 +429,7 @@ class _Rulings:
         return np.asarray(self.solid.center + half + radius * ring)
 
 
-def _ruled_bands(side: _Rulings, steps: LuminanceSteps, places: Array, segments: int) -> Bands:
+def _ruled_bands(side: Rulings, steps: LuminanceSteps, places: Array, segments: int) -> Bands:
     """Return the closed surface: strips between rulings, and one polygon per end."""
     (first, second), height = side.solid.radii, side.solid.height
     if max(first, second) == 0:
@@ -516,38 +477,4 @@ def _ruled_bands(side: _Rulings, steps: LuminanceSteps, places: Array, segments:
         line_levels=steps.edges[contour[on]],
         steps=steps,
         error=steps.error,
-    )
-
-
-def _chords(side: _Rulings, steps: LuminanceSteps, places: Array, segments: int) -> Laminae:
-    """Return the chords through both rulings of each contour, and the two ends."""
-    inside = (places > 0) & (places < np.pi)
-    lit = places[inside]
-    # Beyond the last contour the side has one value, with as many segments as on a circle.
-    start = lit.max(initial=0.0)
-    count = max(math.ceil((np.pi - start) * segments / (2 * np.pi)), 2)
-    beyond = np.linspace(start, np.pi, count + 1)[:-1]
-    # Just beyond the last contour, in the band after it.
-    beyond[0] += 1e-9
-    angle = np.concatenate([lit, beyond])
-    far = np.full(len(beyond), float(side.luminance(np.pi)))
-    values = np.concatenate([steps.values[1:][inside], far])
-    quads = np.stack(
-        # Both rulings of a contour are at plus and minus its angle from the light.
-        [side.place(-angle, first=True), side.place(angle, first=True),
-         side.place(angle, first=False), side.place(-angle, first=False)], axis=1,
-    )  # fmt: skip
-    if side.solid.empty:
-        quads, values = quads[:0], values[:0]
-    pieces, sizes = [quads.reshape(-1, 3)], [4] * len(quads)
-    ring = 2 * np.pi * np.arange(segments) / segments
-    for first in (True, False):
-        if side.solid.radii[0 if first else 1] > 0:
-            pieces.append(side.place(ring, first=first))
-            sizes.append(segments)
-            values = np.append(values, side.end(first=first))
-    return Laminae(
-        points=np.concatenate(pieces),
-        offsets=np.concatenate([[0], np.cumsum(sizes)]).astype(np.intp),
-        values=values,
     )

@@ -1,8 +1,7 @@
-"""Cells on lattices of samples, also with closed directions, and the surface cells of a cube."""
+"""Cells on lattices of samples, also with closed directions."""
 
 from __future__ import annotations
 
-import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,7 +47,7 @@ def resolution(value: int | Sequence[int], k: int, closed: Sequence[bool]) -> tu
     return counts
 
 
-def cells(shape: Sequence[int], closed: Sequence[bool], *, twisted: bool = False) -> Indices:
+def cells(shape: Sequence[int], closed: Sequence[bool]) -> Indices:
     """Return the cells of a lattice of 1 to 3 directions; the last index runs fastest.
 
     Parameters
@@ -57,9 +56,6 @@ def cells(shape: Sequence[int], closed: Sequence[bool], *, twisted: bool = False
         Number of samples in each direction.
     closed : sequence of bool
         Whether the last sample of a direction is followed by its first.
-    twisted : bool, default: False
-        Whether the second direction is reversed (index ``-j`` for ``j``) where the first one, which
-        must be closed, returns to its start, as on a Klein bottle.
 
     Returns
     -------
@@ -67,11 +63,6 @@ def cells(shape: Sequence[int], closed: Sequence[bool], *, twisted: bool = False
         Segments, quadrilaterals or hexahedra with corners in VTK's order.
     """
     index = np.arange(int(np.prod(shape)), dtype=np.intp).reshape(tuple(shape))
-    if twisted:
-        # Index -j modulo the count: reversed, and turned by one, so that 0 stays where it is.
-        back = np.roll(index[0, ::-1], 1, axis=0)
-        index = np.concatenate([index, back[np.newaxis]])
-        closed = (False, *closed[1:])
     # Behind the last sample comes the first one itself, no copy of it: a closed direction has no
     # seam.
     index = np.pad(index, [(0, int(wraps)) for wraps in closed], mode="wrap")
@@ -80,42 +71,3 @@ def cells(shape: Sequence[int], closed: Sequence[bool], *, twisted: bool = False
         for corner in _CORNERS[len(shape)]
     ]
     return np.stack([part.ravel() for part in parts], axis=1)
-
-
-def cube_skin(dimension: int, size: int, *, opposite: bool = False) -> tuple[Indices, Indices]:
-    """Return the lattice points on the surface of a cube, each once, and the cells between them.
-
-    Parameters
-    ----------
-    dimension : int
-        Dimension of the cube, 3 or 4; its surface has one less.
-    size : int
-        Number of cells along an edge.
-    opposite : bool, default: False
-        Whether opposite points are identified, which makes the surface a projective space.
-
-    Returns
-    -------
-    points : ndarray of int, shape (N, dimension)
-        Coordinates from ``-size`` to ``size`` in steps of 2.
-    cells : ndarray of int, shape (M, 2^(dimension - 1))
-    """
-    # Twice the coordinates, which are whole numbers about 0 for odd numbers of cells, too.
-    steps = 2 * np.arange(size + 1) - size
-    within = np.stack(np.meshgrid(*[steps] * (dimension - 1), indexing="ij"), axis=-1)
-    within = within.reshape(-1, dimension - 1)
-    local = cells([size + 1] * (dimension - 1), [False] * (dimension - 1))
-    places: list[Indices] = []
-    faces: list[Indices] = []
-    # Of opposite faces one is enough where opposite points are one.
-    for axis, side in itertools.product(range(dimension), (1,) if opposite else (1, -1)):
-        faces.append(local + len(places) * len(within))
-        places.append(np.insert(within, axis, side * size, axis=1))
-    corner = np.concatenate(places)
-    if opposite:
-        # The sign of the first non-zero coordinate decides which of both points is kept.
-        first = np.argmax(corner != 0, axis=1)
-        corner = corner * np.sign(corner[np.arange(len(corner)), first])[:, np.newaxis]
-    # Faces share the points of their edges, which are found by equal coordinates.
-    points, number = np.unique(corner, axis=0, return_inverse=True)
-    return points, np.asarray(number, dtype=np.intp).reshape(-1)[np.concatenate(faces)]

@@ -1,55 +1,413 @@
-"""Curves, surfaces and 3-manifolds in 4 dimensions and more, with exact tangents.
-
-Every shape is a :class:`~vizlight.geometry.nspace.parametric.Manifold` of points, orthonormal
-tangent frames and cells. Closed directions share their points, so no shape has a seam.
-"""
+"""A k-manifold in n-space, sampled from a function of k parameters, with its tangents; tori."""
 
 from __future__ import annotations
 
-from fractions import Fraction
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
 from vizlight import _check
 from vizlight.geometry.nspace import lattice
-from vizlight.geometry.nspace.parametric import ROUNDING, Manifold, manifold, parametric
+from vizlight.model.frames import orthonormalize
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Array, Bools, Complex, Indices
+    from vizlight._types import AnyArray, Array, Indices, Numbers
 
-    Function = Callable[[Complex], Complex]
+    Function = Callable[..., Iterable[ArrayLike]]
+    TangentFunction = Callable[..., Iterable[Iterable[ArrayLike]]]
+    Samples = Callable[..., tuple[Array, Array]]
 
-__all__ = [
-    "Manifold",
-    "clifford_torus",
-    "complex_curve",
-    "hopf_fibres",
-    "klein_bottle",
-    "parametric",
-    "sphere3",
-    "torus",
-    "torus_curve",
-    "veronese",
-]
+__all__ = ["Manifold", "parametric", "torus"]
 
-#: Bisections of a step between two samples, to find out whether it is a jump. Of a step of a square
-#: root at 0, the steepest continuous one, 2^-12 remains.
-HALVINGS = 24
-#: Multiplication of a unit quaternion (x, y, z, w) by i, j and k: for each of the three the source
-#: index and the sign of every component.
-_UNITS = (
-    ((3, 2, 1, 0), (1, -1, 1, -1)),
-    ((2, 3, 0, 1), (1, 1, -1, -1)),
-    ((1, 0, 3, 2), (-1, 1, 1, -1)),
-)
-TURN = 2 * np.pi
-#: Largest radius whose square is well within the range of float64.
+Tangents = Literal["complex", "central"]
+
+#: Complex step, as a share of the domain: its square vanishes next to 1.
+COMPLEX_STEP = 1e-30
+EPS = float(np.finfo(np.float64).eps)
+
+
+def central_step(eps: float) -> float:
+    """Return the step of central differences, as a share of the domain, for numbers of a given eps.
+
+    The cube root of eps balances the truncation and the rounding error.
+    """
+    return float(eps ** (1 / 3)) / 8
+
+
+#: Largest distance, as a share of the extent, between the two ends of a closed direction.
+CLOSED = 1e-9
+#: Largest difference of the tangent spaces at both ends of a closed direction.
+SAME_SPACE = 1e-5
+#: Largest relative difference between the complex step and central differences.
+NOT_ANALYTIC = 1e-5
+#: Rounding error of a function, in eps of its value and of the effect of rounded parameters.
+ROUNDING = 64
+#: Largest radius of a torus.
 LARGEST_RADIUS = 1e150
+
+
+@dataclass(frozen=True)
+class Manifold:
+    """A sampled k-manifold in n-space.
+
+    Attributes
+    ----------
+    points : ndarray, shape (N, n)
+        Positions.
+    frame : ndarray, shape (N, k, n)
+        Orthonormal tangents; rows past the rank are zero.
+    cells : ndarray of int, shape (M, 2^k)
+        Segments, quadrilaterals or hexahedra between the points, with corners in VTK's order. A
+        closed direction shares its points across the seam.
+
+    Numbers that are not finite are kept; results from them are marked as invalid.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an array does not hold real numbers, or the shapes do not fit.
+    """
+
+    points: Array
+    frame: Array
+    cells: Indices
+
+    def __post_init__(self) -> None:
+        points, frame = (_check.floats(name, getattr(self, name)) for name in ("points", "frame"))
+        if points.ndim != 2 or points.shape[1] < 2:
+            raise ValueError(_check.message("points", "shape (N, n), n of 2 or more", points))
+        count, n = points.shape
+        if frame.ndim != 3 or frame.shape[::2] != (count, n) or not 0 < frame.shape[1] < n:
+            expected = f"shape ({count}, k, {n}) with k < {n}, for points of shape ({count}, {n})"
+            raise ValueError(_check.message("frame", expected, frame))
+        cells = _check.cells("cells", self.cells, count, (2 ** frame.shape[1],))
+        _check.set_fields(self, points=points, frame=frame, cells=cells)
+
+    @property
+    def k(self) -> int:
+        """Dimension of the manifold."""
+        return int(self.frame.shape[1])
+
+    @property
+    def n(self) -> int:
+        """Dimension of the space."""
+        return int(self.points.shape[1])
+
+
+def manifold(points: Array, tangents: Array, cells: Indices) -> Manifold:
+    """Return a :class:`Manifold` of tangents (N, k, n), which are orthonormalised first."""
+    return Manifold(points, orthonormalize(tangents)[0], cells)
+
+
+def parametric(
+    function: Function,
+    domain: Sequence[Sequence[float]],
+    n: int,
+    /,
+    *,
+    resolution: int | Sequence[int] = 64,
+    tangents: Tangents | TangentFunction = "central",
+    closed: Sequence[bool] | bool | None = None,
+    step: float | None = None,
+) -> Manifold:
+    """Sample a k-manifold in n-space, k = 1, 2 or 3.
+
+    Parameters
+    ----------
+    function : callable
+        Function of the k parameters, which are arrays of one shape inside the domain. It returns n
+        coordinates of that shape (or a number for a constant coordinate).
+    domain : sequence of (low, high), one for each parameter
+        Range of each parameter.
+    n : int
+        Dimension of the space, more than k.
+    resolution : int or k of them, default: 64
+        Number of samples in each direction.
+    tangents : {"central", "complex"} or callable, default: "central"
+        Source of the tangents: central differences; the complex step, for a function that is
+        analytic and accepts complex parameters (no ``abs``, ``arctan2`` or comparison); or a
+        function of the same parameters that returns the exact tangents, k rows of n components.
+    closed : bool or k of them, optional
+        Whether a direction returns to its start, so that its last sample is followed by its first.
+        Default: determined from the points and tangent spaces at both ends.
+    step : float, optional
+        Step of the differences, as a share of each direction's range. Default: eps^(1/3)/8 for
+        central differences, which is 7.6e-7, or 6.2e-4 where the function returns float32; 1e-30
+        for the complex step.
+
+    Returns
+    -------
+    Manifold
+
+    Raises
+    ------
+    TypeError
+        If the function does not take or return such arrays.
+    ValueError
+        If an argument is invalid, the function is not finite on its domain, a direction that should
+        be closed is not, the step is lost in the rounding of the parameters, or the function is not
+        analytic although the complex step requires it: its derivative differs from central
+        differences by more than 1e-5 of itself plus their own error.
+
+    Notes
+    -----
+    For a step h in the parameter's own unit, the error of each component of a tangent by central
+    differences is ``(h^2/6) |f'''| + eps (|f| + |u f'|) / h``, with eps of the type that the
+    function returns. For a function that varies over a domain from 0 on like one period of a sine
+    this is about 1e-10 of the extent in float64 and 3e-4 in float32. The complex step
+    ``Im f(u + i h) / h`` subtracts nothing, so h may be tiny, and its error is only the rounding of
+    the function itself, a few eps. Differences stay inside the domain: at its
+    ends they are the slope of the parabola through the end and the points h and 2 h from it, with
+    an error of ``(h^2/3) |f'''|`` and four times the rounding. Where tangents are dependent, for
+    example at the poles of spherical coordinates, the frame has rows of zero and only ambient light
+    remains. A twisted direction (a Moebius band) keeps two points at each place of its seam.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from vizlight.geometry import manifolds
+    >>> circle = manifolds.parametric(lambda t: (np.cos(t), np.sin(t), 0), [(0, 2 * np.pi)], 3)
+    >>> circle.points.shape, circle.frame.shape, circle.cells.shape
+    ((64, 3), (64, 1, 3), (64, 2))
+    """
+    _check.function("function", function)
+    ends, wraps = _domain(domain, closed)
+    k = len(ends)
+    n = _check.integer("n", n, low=k + 1)
+    # The precision of the coarsest type that the function returns at the start of its domain.
+    first = _rows(function, list(ends[:, :1]), n)
+    eps = max([EPS, *(float(np.finfo(row.dtype).eps) for row in first if row.dtype.kind == "f")])
+    slopes = _slopes(function, ends, n, tangents, step, eps)
+    # Differences at both ends are one-sided, so their second-order errors need not agree.
+    coarse = step if step is not None and tangents == "central" else 0.0
+    same = max(SAME_SPACE, ROUNDING * eps ** (2 / 3), (8 * coarse) ** 2)
+
+    def sample(*u: Array) -> tuple[Array, Array]:
+        points = _values(function, u, n)
+        return points, slopes(u, points)
+
+    if wraps is None:
+        wraps = tuple(_is_closed(sample, ends, axis, eps, same) for axis in range(k))
+    shape = lattice.resolution(resolution, k, wraps)
+    axes = [
+        # The end of a closed direction is its start, which is sampled already.
+        np.linspace(low, high, count, endpoint=not wrap)
+        for (low, high), count, wrap in zip(ends, shape, wraps, strict=True)
+    ]
+    u: list[Array] = [axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")]
+    points, rows = sample(*u)
+    for axis in range(k):
+        if closed is not None and wraps[axis] and not _is_closed(sample, ends, axis, eps):
+            expected = f"a function that returns to its start in direction {axis}"
+            remedy = "pass closed=False for an open direction"
+            raise ValueError(_check.message("closed", expected, "one that does not", remedy))
+    return manifold(points, rows, lattice.cells(shape, wraps))
+
+
+def _domain(domain: object, closed: object) -> tuple[Array, tuple[bool, ...] | None]:
+    ends = _check.floats("domain", domain).astype(np.float64)
+    if ends.ndim != 2 or ends.shape[1] != 2 or not 1 <= len(ends) <= 3:
+        raise ValueError(_check.message("domain", "1 to 3 pairs (low, high)", ends))
+    sizes = ends[:, 1] - ends[:, 0]
+    if not np.all(np.isfinite(ends) & (sizes[:, np.newaxis] > 0)):
+        raise ValueError(_check.message("domain", "finite pairs with low < high", ends.tolist()))
+    if closed is None:
+        return ends, None
+    expected = f"a bool or {len(ends)} of them"
+    try:
+        wraps = np.asarray(closed)
+    except ValueError as error:
+        raise TypeError(_check.message("closed", expected, _check.describe(closed))) from error
+    if wraps.dtype.kind not in "biu" or not np.isin(wraps, (0, 1)).all():
+        raise TypeError(_check.message("closed", expected, _check.describe(closed)))
+    if wraps.shape not in ((), (len(ends),)):
+        raise ValueError(_check.message("closed", expected, _check.describe(closed)))
+    return ends, tuple(bool(wrap) for wrap in np.broadcast_to(wraps, len(ends)))
+
+
+def _slopes(
+    function: Function,
+    ends: Array,
+    n: int,
+    tangents: Tangents | TangentFunction,
+    step: float | None,
+    eps: float,
+) -> Callable[[Sequence[Array], Array], Array]:
+    """Return a function of parameters and points that returns tangents (N, k, n)."""
+    if step is not None:
+        step = _check.number("step", step, low=1e-290, high=0.5)
+    if callable(tangents):
+        return lambda u, _: _exact(tangents, u, n)
+    if not isinstance(tangents, str) or tangents not in get_args(Tangents):
+        got = _check.describe(tangents)
+        raise ValueError(_check.message("tangents", "'central', 'complex' or a function", got))
+    if tangents == "central":
+        steps = _central_steps(step, ends, eps)
+        return lambda u, _: _central(function, u, n, steps, ends)
+    coarse = _central_steps(None, ends, eps)
+    fine = (step or COMPLEX_STEP) * (ends[:, 1] - ends[:, 0])
+    # The complex step subtracts nothing, and only has to be a normal number.
+    if not np.all(fine >= np.finfo(np.float64).tiny):
+        raise ValueError(_lost_step(step, fine, ends))
+
+    def checked(u: Sequence[Array], points: Array) -> Array:
+        """Return ``Im f(u + i h) / h`` after a comparison with central differences."""
+        slopes = _complex_step(function, u, n, fine)
+        # The difference of the two estimates the error of central differences themselves.
+        near, far = (_central(function, u, n, s * coarse, ends) for s in (1, 2))
+        place = np.abs(np.stack(u, axis=1))[..., np.newaxis]
+        # The function rounds its values, and the parameters' rounding moves them by the slope.
+        rounding = np.abs(points)[:, np.newaxis] + place * np.abs(near)
+        allowed = NOT_ANALYTIC * np.abs(near) + np.abs(far - near)
+        allowed += ROUNDING * eps * rounding / coarse[:, np.newaxis]
+        if not np.all(np.abs(slopes - near) <= allowed):
+            expected = "one that is analytic, as the complex step requires"
+            got = "one for which the complex step and central differences disagree"
+            remedy = "pass tangents='central'"
+            raise ValueError(_check.message("function", expected, got, remedy))
+        return slopes
+
+    return checked
+
+
+def _central_steps(step: float | None, ends: Array, eps: float) -> Array:
+    """Return the step in each direction, if it is large compared to the parameters' rounding."""
+    steps: Array = (central_step(eps) if step is None else step) * (ends[:, 1] - ends[:, 0])
+    # A step of few units in the last place of a parameter would be rounding for the most part.
+    if not np.all(steps >= 8 * np.spacing(np.abs(ends).max(axis=1))):
+        raise ValueError(_lost_step(step, steps, ends))
+    return steps
+
+
+def _lost_step(step: float | None, steps: Array, ends: Array) -> str:
+    """Return an error message for a step that the rounding of the parameters hides."""
+    got = f"{steps.min():.2g} on {ends.tolist()}"
+    if step is not None:
+        expected = "one that rounding of the parameters does not hide"
+        return _check.message("step", expected, got, "pass a larger step")
+    remedy = "measure parameters from its middle, in a unit of its size, or pass exact tangents"
+    expected = "one in which rounding does not hide the step of differences"
+    return _check.message("domain", expected, got, remedy)
+
+
+def _exact(tangents: TangentFunction, u: Sequence[Array], n: int) -> Array:
+    """Return the tangents that a user's function returns, validated."""
+    with np.errstate(all="ignore"):
+        returned = tangents(*u)
+    expected = f"{len(u)} rows of {n}"
+    try:
+        rows = list(returned)
+    except TypeError as error:
+        raise TypeError(_check.message("tangents", expected, _check.describe(returned))) from error
+    if len(rows) != len(u):
+        raise ValueError(_check.message("tangents", expected, len(rows)))
+    return np.stack([_values(lambda *_, row=row: row, u, n, "tangents") for row in rows], axis=1)
+
+
+def _rows(
+    function: Function, u: Sequence[Numbers], n: int, name: str = "function"
+) -> list[AnyArray]:
+    """Return n coordinates in the parameters' shape, each of its own type.
+
+    They may be complex only where a parameter is.
+    """
+    with np.errstate(all="ignore"):
+        returned = function(*u)
+    expected = f"one that returns {n} coordinates of the parameters' shape, or numbers"
+    try:
+        # Constant coordinates may be given as numbers.
+        rows = [np.broadcast_to(np.asarray(row), u[0].shape) for row in returned]
+    except (TypeError, ValueError) as error:
+        raise TypeError(_check.message(name, expected, _check.describe(returned))) from error
+    if len(rows) != n:
+        raise ValueError(_check.message(name, expected, len(rows)))
+    # A complex result is right only where a parameter is complex: its kind then joins the others.
+    if any(row.dtype.kind not in "iubf" + np.result_type(*u).kind for row in rows):
+        kinds = ", ".join(sorted({str(row.dtype) for row in rows}))
+        raise TypeError(_check.message(name, "one that returns real numbers", kinds))
+    return rows
+
+
+def _values(function: Function, u: Sequence[Numbers], n: int, name: str = "function") -> AnyArray:
+    """Return n finite coordinates per point, (N, n), complex where a parameter is."""
+    points = np.stack(_rows(function, u, n, name), axis=1).astype(np.result_type(np.float64, *u))
+    finite = np.all(np.isfinite(points), axis=1)
+    lost = int(np.count_nonzero(~finite))
+    if lost:
+        expected = "finite coordinates on its domain"
+        where = ", ".join(f"{x[np.argmin(finite)]:g}" for x in u)
+        got = f"{lost} of {len(points)} points with NaN or infinity, the first at ({where})"
+        raise ValueError(_check.message(name, expected, got, "choose a domain without them"))
+    return points
+
+
+def _central(function: Function, u: Sequence[Array], n: int, steps: Array, ends: Array) -> Array:
+    """Return the slopes of parabolas through three points, all within the domain."""
+    rows = []
+    for axis, h in enumerate(steps):
+        low, high = ends[axis]
+        # At the ends of the domain all three points move inside it.
+        middle = np.clip(u[axis], low + h, high - h)
+        ahead, behind = list(u), list(u)
+        ahead[axis], behind[axis] = np.minimum(middle + h, high), np.maximum(middle - h, low)
+        # Rounding makes the actual distance differ from the requested one.
+        width = (ahead[axis] - behind[axis])[:, np.newaxis]
+        right, left = _values(function, ahead, n), _values(function, behind, n)
+        slope = (right - left) / width
+        at_ends = np.flatnonzero(middle != u[axis])
+        if len(at_ends):
+            at = [x[at_ends] for x in u]
+            at[axis] = middle[at_ends]
+            half = width[at_ends] / 2
+            bend = (right[at_ends] - 2 * _values(function, at, n) + left[at_ends]) / half
+            # The parabola's second derivative, times the way from its middle to the point.
+            slope[at_ends] += bend * (u[axis] - middle)[at_ends, np.newaxis] / half
+        rows.append(slope)
+    return np.stack(rows, axis=1)
+
+
+def _complex_step(function: Function, u: Sequence[Array], n: int, steps: Array) -> Array:
+    """Return ``Im f(u + i h) / h``."""
+    rows = []
+    for axis, h in enumerate(steps):
+        moved: list[Numbers] = list(u)
+        moved[axis] = u[axis] + 1j * h
+        try:
+            rows.append(_values(function, moved, n).imag / h)
+        except TypeError as error:
+            expected, remedy = "one that takes complex parameters", "pass tangents='central'"
+            raise TypeError(_check.message("function", expected, str(error), remedy)) from error
+    return np.stack(rows, axis=1)
+
+
+def _is_closed(
+    sample: Samples, ends: Array, axis: int, eps: float, same: float | None = None
+) -> bool:
+    """Return whether the points, and to ``same`` the tangent spaces, at both ends coincide."""
+    # Nine places across the seam tell whether all of it closes, and not one point by chance.
+    across = [np.linspace(low, high, 9) for low, high in ends]
+
+    def on(axes: Sequence[ArrayLike]) -> tuple[Array, Array]:
+        return sample(*(u.ravel() for u in np.meshgrid(*axes)))
+
+    (p, rows_p), (q, rows_q) = (
+        on([*across[:axis], [end], *across[axis + 1 :]]) for end in ends[axis]
+    )
+    # The extent of the whole shape: at its seam alone it may have none.
+    extent = np.ptp(on(across)[0], axis=0).max()
+    if not extent or np.abs(p - q).max() > max(CLOSED, 16 * eps) * extent:
+        return False
+    if same is None:
+        return True
+    # Tangent spaces are compared by their projectors, which do not depend on the basis.
+    frames = [orthonormalize(rows)[0] for rows in (rows_p, rows_q)]
+    first, second = (np.einsum("bki,bkj->bij", frame, frame) for frame in frames)
+    return bool(np.abs(first - second).max() < same)
 
 
 def torus(*radii: float, resolution: int | Sequence[int] = 64) -> Manifold:
@@ -83,10 +441,11 @@ def torus(*radii: float, resolution: int | Sequence[int] = 64) -> Manifold:
     """
     if not 1 <= len(radii) <= 3:
         raise ValueError(_check.message("radii", "1 to 3 radii", len(radii)))
-    sizes = [radius_of(f"radii[{i}]", radius) for i, radius in enumerate(radii)]
+    # The square of a radius must be well within the range of float64.
+    sizes = [_check.positive(f"radii[{i}]", r, high=LARGEST_RADIUS) for i, r in enumerate(radii)]
     k = len(sizes)
     shape = lattice.resolution(resolution, k, [True] * k)
-    angles = np.meshgrid(*(circle(count) for count in shape), indexing="ij")
+    angles = np.meshgrid(*(2 * np.pi * np.arange(count) / count for count in shape), indexing="ij")
     points = np.empty((angles[0].size, 2 * k))
     tangents = np.zeros((len(points), k, 2 * k))
     for i, (radius, angle) in enumerate(zip(sizes, angles, strict=True)):
@@ -94,474 +453,3 @@ def torus(*radii: float, resolution: int | Sequence[int] = 64) -> Manifold:
         points[:, 2 * i], points[:, 2 * i + 1] = radius * cosine, radius * sine
         tangents[:, i, 2 * i], tangents[:, i, 2 * i + 1] = -sine, cosine
     return Manifold(points, tangents, lattice.cells(shape, [True] * k))
-
-
-def clifford_torus(*, radius: float = 1.0, resolution: int | Sequence[int] = 64) -> Manifold:
-    """Return the torus of two equal circles that lies in a 3-sphere.
-
-    Parameters
-    ----------
-    radius : float, default: 1.0
-        Radius of the 3-sphere, in any unit.
-    resolution : int or 2 of them, default: 64
-        Number of samples on each circle.
-
-    Raises
-    ------
-    TypeError, ValueError
-        As :func:`torus`.
-    """
-    # Two circles of the radius r / sqrt(2) are at the distance r from the origin.
-    half = radius_of("radius", radius) / np.sqrt(2)
-    return torus(half, half, resolution=resolution)
-
-
-def torus_curve(
-    ratio: float | Fraction,
-    /,
-    *,
-    r1: float = 1.0,
-    r2: float = 1.0,
-    turns: int | None = None,
-    resolution: int = 1024,
-) -> Manifold:
-    """Return the curve ``f = A t`` on the product torus in 4-space.
-
-    Parameters
-    ----------
-    ratio : float or Fraction
-        Number A of turns of the second circle per turn of the first.
-    r1, r2 : float, default: 1.0
-        Radii of the circles, above 0, in any unit.
-    turns : int, optional
-        Number of turns of the first circle. Default: the denominator of A, which closes the curve,
-        if it is at most 1000; for any other ratio the number is required.
-    resolution : int, default: 1024
-        Number of samples on the curve.
-
-    Returns
-    -------
-    Manifold
-        Segments of a curve that is closed where ``turns * A`` is an integer, otherwise open.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is invalid.
-
-    Notes
-    -----
-    The error of points, relative to the larger radius, and of tangents is ``8 eps`` per component
-    plus 2 eps times the larger of the angles, ``2 pi turns max(1, A)``.
-    Source: Banks, section 3.
-    """
-    number = _check.number("ratio", ratio)
-    r1, r2 = radius_of("r1", r1), radius_of("r2", r2)
-    if turns is None:
-        exact_ratio = ratio if isinstance(ratio, Fraction) else Fraction(number)
-        turns = exact_ratio.limit_denominator(1000).denominator
-        product = turns * number
-        # In doubles 1/3 times 3 is exactly 1, but 5/49 times 49 need not be exactly 5.
-        miss = abs(Fraction(number) * turns - round(product))
-        if product != round(product) and miss >= Fraction(1, 2**40):
-            expected = "a fraction with a denominator of at most 1000"
-            raise ValueError(_check.message("ratio", expected, number, "pass turns="))
-    turns = _check.integer("turns", turns, low=1)
-    whole = round(turns * number)
-    closed = abs(turns * number - whole) < 1e-9
-    (count,) = lattice.resolution(resolution, 1, [closed])
-    part = np.arange(count) / (count if closed else count - 1)
-    t = TURN * turns * part
-    # From a whole number of turns the curve ends where it began; a rounded ratio would miss it.
-    f = TURN * whole * part if closed else number * t
-    zero = np.zeros_like(t)
-    points = np.stack([r1 * np.cos(t), r1 * np.sin(t), r2 * np.cos(f), r2 * np.sin(f)], axis=1)
-    along = np.stack([-r1 * np.sin(t), r1 * np.cos(t), zero, zero], axis=1)
-    around = np.stack([zero, zero, -r2 * np.sin(f), r2 * np.cos(f)], axis=1)
-    # Of any length: the frame is normalised below.
-    rows = (along + number * around)[:, np.newaxis]
-    return manifold(points, rows, lattice.cells((count,), [closed]))
-
-
-def hopf_fibres(
-    base: ArrayLike | None = None,
-    /,
-    *,
-    fibres: int = 24,
-    radius: float = 1.0,
-    resolution: int = 96,
-) -> Manifold:
-    """Return fibres of the Hopf map: great circles of the 3-sphere that do not intersect.
-
-    Parameters
-    ----------
-    base : array_like, shape (m, 3), optional
-        Points of the 2-sphere, of any length but 0, one for each fibre. Default: points
-        spread evenly over the sphere.
-    fibres : int, default: 24
-        Number of fibres, if no base is given.
-    radius : float, default: 1.0
-        Radius of the 3-sphere, in any unit.
-    resolution : int, default: 96
-        Number of samples on a fibre, 3 or more.
-
-    Returns
-    -------
-    Manifold
-        Closed curves in 4-space, one after the other.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is invalid.
-
-    Notes
-    -----
-    For a point (a, b, c) of the unit sphere let ``z1 = sqrt((1 + c)/2)`` and
-    ``z2 = sqrt((1 - c)/2) (a - i b)/|a - i b|``. The fibre is ``e^(i t) (z1, z2)``; the Hopf map
-    ``(2 Re(z1 z2*), 2 Im(z1 z2*), |z1|^2 - |z2|^2)`` maps it to (a, b, c). The tangent is i times
-    the point, of unit length by construction. The error of both, relative to the radius, is 8 eps
-    per component.
-    """
-    radius = radius_of("radius", radius)
-    if base is None:
-        fibres = _check.integer("fibres", fibres, low=1)
-        _check.holds("fibres", (fibres, 4))
-        base = _spread(fibres)
-    places = _check.vectors("base", base, n=3).astype(np.float64)
-    places = places.reshape(-1, 3)
-    largest = np.abs(places).max(axis=1, keepdims=True, initial=0.0)
-    if not np.all((largest > 0) & np.isfinite(largest)):
-        expected = "points of the sphere, finite and not at its centre"
-        raise ValueError(_check.message("base", expected, places))
-    # By the largest component first, so that no square overflows.
-    places = places / largest
-    a, b, c = (places / np.linalg.norm(places, axis=1, keepdims=True)).T
-    across = np.hypot(a, b)
-    # |z1|^2 = (1 + c)/2 without cancellation where c is near -1, and z2 likewise.
-    near, far = 1 + np.abs(c), across**2 / (1 + np.abs(c))
-    z1 = np.sqrt(np.where(c >= 0, near, far) / 2)
-    z2 = np.sqrt(np.where(c >= 0, far, near) / 2) * np.exp(-1j * np.arctan2(b, a))
-    (count,) = lattice.resolution(resolution, 1, [True])
-    turning = np.exp(1j * circle(count))
-    pairs = np.stack([np.outer(z1, turning).ravel(), np.outer(z2, turning).ravel()], axis=1)
-    cells = lattice.cells((count,), [True]) + count * np.arange(len(a))[:, np.newaxis, np.newaxis]
-    # The real and imaginary parts of both numbers, one after the other, are the four coordinates.
-    points = radius * pairs.view(np.float64)
-    return manifold(points, (1j * pairs).view(np.float64)[:, np.newaxis], cells.reshape(-1, 2))
-
-
-def circle(count: int) -> Array:
-    """Return ``count`` evenly spaced angles around a circle, from 0 and without 2 pi."""
-    return TURN * np.arange(count) / count
-
-
-def radius_of(name: str, value: object) -> float:
-    """Return a radius above 0 with a square that does not overflow."""
-    return _check.positive(name, value, high=LARGEST_RADIUS)
-
-
-def _spread(count: int) -> Array:
-    """Return points on the unit sphere along a spiral of golden angles."""
-    i = np.arange(count) + 0.5
-    # Each point is turned from the one before by 2 pi times the golden ratio.
-    height, angle = 1 - 2 * i / count, np.pi * (1 + np.sqrt(5)) * i
-    width = np.sqrt(1 - height**2)
-    return np.stack([width * np.cos(angle), width * np.sin(angle), height], axis=1)
-
-
-def klein_bottle(
-    *, major: float = 2.0, minor: float = 1.0, resolution: int | Sequence[int] = (96, 48)
-) -> Manifold:
-    """Return the Klein bottle in 4-space, where it does not intersect itself.
-
-    A circle of radius ``minor`` moves around a circle of radius ``major`` and is flipped in the zw
-    plane on its way: ``((R + r cos v) cos u, (R + r cos v) sin u, r sin v cos(u/2),
-    r sin v sin(u/2))``.
-
-    Parameters
-    ----------
-    major, minor : float
-        Radii R > r > 0, in any unit.
-    resolution : int or 2 of them, default: (96, 48)
-        Number of samples along u and along v.
-
-    Returns
-    -------
-    Manifold
-        Quadrilaterals; where u returns to its start, v is reversed, point for point.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is invalid.
-
-    Notes
-    -----
-    The error of points, relative to ``major``, is 12 eps per component. The error of the space that
-    the frame spans is ``12 eps R/(R - r)``: near R = r the rounding of the angles rotates the frame
-    where the tube passes the axis.
-    """
-    major, minor = radius_of("major", major), radius_of("minor", minor)
-    if minor >= major:
-        raise ValueError(_check.message("minor", f"less than major = {major:g}", minor))
-    shape = lattice.resolution(resolution, 2, [True, True])
-    u, v = (x.ravel() for x in np.meshgrid(*(circle(count) for count in shape), indexing="ij"))
-    # Unit circles in the xy and in the zw plane.
-    x, y, z, w = np.cos(u), np.sin(u), np.cos(u / 2), np.sin(u / 2)
-    out, up = major + minor * np.cos(v), minor * np.sin(v)
-    inward, lift = -minor * np.sin(v), minor * np.cos(v)
-    points = np.stack([out * x, out * y, up * z, up * w], axis=1)
-    # The zw plane turns half as fast, which is the half in the derivative by u.
-    along = np.stack([-out * y, out * x, -up * w / 2, up * z / 2], axis=1)
-    across = np.stack([inward * x, inward * y, lift * z, lift * w], axis=1)
-    cells = lattice.cells(shape, [True, True], twisted=True)
-    return manifold(points, np.stack([along, across], axis=1), cells)
-
-
-def veronese(*, radius: float = 1.0, resolution: int = 24) -> Manifold:
-    """Return the Veronese surface in 4-space: the projective plane without self-intersection.
-
-    It is the image of the sphere under ``(x y, x z, y z, (x^2 - y^2)/2)``, which maps opposite
-    points to the same point.
-
-    Parameters
-    ----------
-    radius : float, default: 1.0
-        Radius of the sphere; the coordinates are in the square of its unit.
-    resolution : int, default: 24
-        Number of cells along an edge of the cube, half of whose surface is projected to the sphere.
-
-    Returns
-    -------
-    Manifold
-        Quadrilaterals without a boundary; opposite points are identified.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is invalid.
-
-    Notes
-    -----
-    The error of points and of the space that the frame spans is 12 eps per component.
-    """
-    radius = radius_of("radius", radius)
-    size = _check.integer("resolution", resolution, low=2)
-    _check.holds("resolution", (size, size))
-    corners, cells = lattice.cube_skin(3, size, opposite=True)
-    place = _round(corners, size)
-    x, y, z = place.T
-    zero = np.zeros_like(x)
-    # The derivative of the map at the point.
-    derivative = np.array([[y, x, zero], [z, zero, x], [zero, z, y], [x, -y, zero]])
-    # Two directions tangent to the sphere, without a pole: the cross product with the coordinate
-    # axis farthest from the point, and the cross product with that.
-    first = np.cross(place, np.eye(3)[np.argmin(np.abs(place), axis=1)])
-    across = np.stack([first, np.cross(place, first)], axis=1)
-    # The product keeps the digits that x^2 - y^2 loses where both are nearly equal.
-    points = radius**2 * np.stack([x * y, x * z, y * z, (x - y) * (x + y) / 2], axis=1)
-    return manifold(points, np.einsum("ijb,bkj->bki", derivative, across), cells)
-
-
-def complex_curve(
-    function: Callable[[Complex], ArrayLike],
-    /,
-    *,
-    domain: Sequence[Sequence[float]] = ((-1.0, 1.0), (-1.0, 1.0)),
-    derivative: Callable[[Complex], ArrayLike] | None = None,
-    resolution: int | Sequence[int] = 64,
-) -> Manifold:
-    """Return the graph ``w = f(z)`` of a complex function, a surface (Re z, Im z, Re w, Im w).
-
-    Parameters
-    ----------
-    function : callable
-        Function that takes and returns a complex array. It must be analytic and single-valued on
-        the domain and up to a thousandth of its larger side around it.
-    domain : ((low, high), (low, high))
-        Ranges of the real and the imaginary part of z.
-    derivative : callable, optional
-        Derivative f', used without a check. Default: Cauchy's integral around z.
-    resolution : int or 2 of them, default: 64
-        Number of samples in each direction.
-
-    Returns
-    -------
-    Manifold
-        Quadrilaterals; a surface with a boundary.
-
-    Raises
-    ------
-    TypeError
-        If the function does not take or return such arrays.
-    ValueError
-        If an argument is invalid, or the function is not finite or not analytic on its domain: it
-        depends on the conjugate of z by more than rounding, or has a branch cut between
-        neighbouring samples (a root or a logarithm around 0).
-
-    Notes
-    -----
-    The tangents ``(1, 0, Re f', Im f')`` and ``(0, 1, -Im f', Re f')`` are orthogonal by
-    construction. Without a derivative f' is the mean of ``f(z + d)/d`` over eight d on a circle of
-    radius h, with an error of ``h^8 |f^(9)|/9! + eps ((|f| + |z f'|)/h + 4 |f'|)``. With h =
-    eps^(1/5) of the domain's larger side, 7.4e-4, that is 1e-12 of the largest ``|f|`` and ``|f'|``
-    unless a pole is nearer than 40 h. The mean of ``f(z + d)/d*`` is the derivative by the
-    conjugate, which is 0 if f is analytic. The inverse of f, a root or a logarithm, has the same
-    surface with z and w exchanged, which a rotation in ``project`` does.
-    """
-    _check.function("function", function)
-    _check.function("derivative", derivative, optional=True)
-    sides = _check.floats("domain", domain)
-    if sides.shape != (2, 2):
-        raise ValueError(_check.message("domain", "two pairs (low, high)", f"shape {sides.shape}"))
-    side = float(np.ptp(sides, axis=1).max())
-
-    def value(z: Complex) -> Complex:
-        return _complex("function", function, z)
-
-    def place(x: Array, y: Array) -> tuple[Array, ...]:
-        w = value(x + 1j * y)
-        return x, y, w.real, w.imag
-
-    def tangents(x: Array, y: Array) -> tuple[tuple[ArrayLike, ...], ...]:
-        z = x + 1j * y
-        d = _slope(value, z, side) if derivative is None else _complex("derivative", derivative, z)
-        if derivative is not None and not np.all(np.isfinite(d)):
-            expected = "one that is finite on its domain"
-            raise ValueError(_check.message("derivative", expected, "NaN or infinity"))
-        return (1.0, 0.0, d.real, d.imag), (0.0, 1.0, -d.imag, d.real)
-
-    shape = parametric(place, domain, 4, resolution=resolution, tangents=tangents, closed=False)
-    _check_sheets(value, shape)
-    return shape
-
-
-def _complex(name: str, function: Callable[[Complex], ArrayLike], z: Complex) -> Complex:
-    """Return the values of a user's function at z, real or complex, in the shape of z."""
-    with np.errstate(all="ignore"):
-        returned = function(z)
-    expected = "one that returns numbers in the shape of its argument"
-    try:
-        w = np.broadcast_to(np.asarray(returned), z.shape)
-    except ValueError as error:
-        raise ValueError(_check.message(name, expected, _check.describe(returned))) from error
-    if w.dtype.kind not in "iubfc":
-        raise TypeError(_check.message(name, expected, _check.describe(returned)))
-    return w
-
-
-def _slope(value: Function, z: Complex, side: float) -> Complex:
-    """Return f' by Cauchy's integral over eight points around z, at which f must be analytic.
-
-    Coefficient m of the discrete Fourier transform of f on the circle is the term
-    ``f^(m) d^m / m!`` of the Taylor series. Coefficient 7 is also coefficient -1, the term of the
-    conjugate of d.
-    """
-    w = value(z)
-    eps = float(np.finfo(w.dtype if w.dtype.kind in "fc" else np.float64).eps)
-    h = eps**0.2 * side
-    turns = np.exp(2j * np.pi / 8 * np.arange(8))
-    around = np.stack([value(z + h * turn) for turn in turns], axis=-1)
-    remedy = "choose a domain away from poles and branch cuts, or pass derivative="
-    if not np.all(np.isfinite(around)):
-        expected = f"finite values on its domain and up to {h:.2g} outside it"
-        raise ValueError(_check.message("function", expected, "NaN or infinity", remedy))
-    with np.errstate(all="ignore"):
-        part = np.fft.fft(around, axis=-1) / 8
-        size = np.abs(part)
-        # Terms 5 and 6 are hardly there where f is analytic, and show what noise the others have.
-        high = size[..., 5] + size[..., 6]
-        floor = ROUNDING * (np.median(high) + eps * (np.abs(w) + np.abs(z) * size[..., 1] / h))
-        # Little more of the conjugate than of those, and those small beside the first ones.
-        good = (size[..., 7] <= 8 * high + floor) & (high <= size[..., 1:5].sum(-1) / 99 + floor)
-    if not np.all(good):
-        got = f"one that depends on the conjugate of z or jumps, at {_first(z, ~good)}"
-        raise ValueError(_check.message("function", "an analytic one", got, remedy))
-    slope: Complex = part[..., 1] / h
-    return slope
-
-
-def _check_sheets(value: Function, shape: Manifold) -> None:
-    """Reject a function that has a branch cut between neighbouring samples.
-
-    Where the step from one sample to the next disagrees with the slopes at both, it is bisected
-    repeatedly, always on the side with the larger step; a step that remains is a jump.
-    """
-    pairs = [shape.cells[:, [i, (i + 1) % 4]] for i in range(4)]
-    ends = np.unique(np.sort(np.concatenate(pairs), axis=1), axis=0)
-    z, w = shape.points.view(np.complex128).T
-    with np.errstate(all="ignore"):
-        # The first row is (1, 0, Re f', Im f') but for its length, which its first component tells.
-        slope = shape.frame[:, 0, 2:].copy().view(np.complex128)[:, 0] / shape.frame[:, 0, 0]
-        a, b = z[ends].T
-        at_a, at_b = w[ends].T
-        # By the trapezoidal rule the step is the mean of both slopes times the way.
-        step, rises = np.abs(at_b - at_a), (b - a) * slope[ends].T
-        rise = np.abs(rises).sum(axis=0) / 2
-        # Negated, since NaN, for which no comparison holds, is odd as well.
-        odd = ~(np.abs(at_b - at_a - rises.sum(axis=0) / 2) <= 0.1 * (step + rise))
-        a, b, at_a, at_b, whole = (x[odd] for x in (a, b, at_a, at_b, step + rise))
-        if not len(a):
-            return
-        for _ in range(HALVINGS):
-            middle = (a + b) / 2
-            at = value(middle)
-            # The half with the larger step holds the jump, if there is one.
-            first = np.abs(at - at_a) >= np.abs(at_b - at)
-            a, b = np.where(first, a, middle), np.where(first, middle, b)
-            at_a, at_b = np.where(first, at_a, at), np.where(first, at, at_b)
-        eps = float(np.finfo(at_b.dtype).eps)
-        jump = ~(np.abs(at_b - at_a) <= 0.1 * whole + ROUNDING * eps * np.abs(at_a))
-    if jump.any():
-        got = f"one that jumps at {_first(a, jump)}"
-        remedy = "choose a domain without its branch cut"
-        raise ValueError(_check.message("function", "an analytic one", got, remedy))
-
-
-def _first(z: Complex, where: Bools) -> str:
-    """Return the first selected number as text."""
-    return f"z = {complex(z[where][0]):.3g}"
-
-
-def sphere3(*, radius: float = 1.0, resolution: int = 8) -> Manifold:
-    """Return the 3-sphere in 4-space as hexahedra.
-
-    Parameters
-    ----------
-    radius : float, default: 1.0
-        Radius of the sphere, in any unit.
-    resolution : int, default: 8
-        Number of cells along an edge of each of the 8 cubes that are projected to the sphere.
-
-    Returns
-    -------
-    Manifold
-        ``8 resolution^3`` hexahedra without a boundary; k = 3.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is invalid.
-
-    Notes
-    -----
-    The frame is the point, as a quaternion, times i, j and k: orthonormal and given by one formula
-    everywhere, which is impossible on a 2-sphere. The error is 4 eps per component.
-    """
-    radius = radius_of("radius", radius)
-    size = _check.integer("resolution", resolution, low=1)
-    _check.holds("resolution", (size, size, size))
-    corners, cells = lattice.cube_skin(4, size)
-    place = _round(corners, size)
-    frame = np.stack([place[:, order] * sign for order, sign in _UNITS], axis=1)
-    return Manifold(radius * place, frame, cells)
-
-
-def _round(corners: Indices, size: int) -> Array:
-    """Return unit vectors through the lattice points of a cube, spread at equal angles."""
-    # Cells of equal size on the cube would be several times larger on the sphere in the middle of a
-    # face than at its corners.
-    place = np.tan(np.pi / 4 * (corners / size))
-    unit: Array = place / np.linalg.norm(place, axis=1, keepdims=True)
-    return unit

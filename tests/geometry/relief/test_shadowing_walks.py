@@ -8,7 +8,7 @@ from fields import by_cells, followed, hills, places, sun
 
 from vizlight import _compiled, _pool
 from vizlight.geometry import relief
-from vizlight.geometry.relief import height_field, shadowing, walks
+from vizlight.geometry.relief import height_field, shadowing
 
 pytestmark = pytest.mark.usefixtures("each_code")
 
@@ -23,9 +23,9 @@ def test_both_codes_over_squares_are_the_cells(way, border, random):
     field = height_field.make(x, y, z, border=border)
     start = (start - field.origin).T.copy()
     one = by_cells(field, start, way)
-    np.testing.assert_allclose(followed(walks.march, field, start, way), one, atol=1e-11)
+    np.testing.assert_allclose(followed(shadowing.march, field, start, way), one, atol=1e-11)
     if _compiled.active():
-        np.testing.assert_allclose(followed(walks.walk, field, start, way), one, atol=1e-11)
+        np.testing.assert_allclose(followed(shadowing.walk, field, start, way), one, atol=1e-11)
 
 
 @pytest.mark.skipif(bool(_compiled._missing()), reason="numba is not available")
@@ -38,8 +38,8 @@ def test_numpy_follows_the_rays_that_a_kernel_fails_with(light, monkeypatch):
     with _compiled.setting("0"):
         numpys = relief.shadow(x, y, z, depth=0.1, **light)
     monkeypatch.setattr(_compiled, "_BROKEN", [])
-    monkeypatch.setattr(walks.walk, "_proven", True)
-    monkeypatch.setattr(walks.walk, "_compiled", broken)
+    monkeypatch.setattr(shadowing.walk, "_proven", True)
+    monkeypatch.setattr(shadowing.walk, "_compiled", broken)
     with _compiled.setting("1"), pytest.warns(RuntimeWarning, match="LLVM ERROR") as caught:
         found = relief.shadow(x, y, z, depth=0.1, **light)
     assert len(caught) == 1

@@ -8,7 +8,7 @@ from vtkmodules.vtkCommonCore import reference
 
 import vizlight
 from vizlight import Light, Material, Scene, View
-from vizlight.vtk.bezier import as_lagrange
+from vizlight.vtk.hull import as_lagrange
 
 TOWARD = np.array([0.3, 0.5, 0.8]) / np.sqrt(0.98)
 SCENE = Scene(

@@ -8,7 +8,6 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Scene, View, presets, render
-from vizlight.draw import visible
 
 SCENE = Scene(view=View(direction=(1, 1, 1)))
 SIZE = (120, 80)
@@ -26,7 +25,7 @@ def test_the_share_is_that_of_the_square():
     plotter.camera.parallel_projection = True
     plotter.camera.parallel_scale = 1
     plotter.add_text("no data")
-    share = visible.share_of_data(plotter)
+    share = render.share_of_data(plotter)
     plotter.close()
     assert share == pytest.approx(0.25, abs=0.02)
 
@@ -37,7 +36,7 @@ def test_keys_are_no_data():
     plotter.add_mesh(pv.Sphere(), color="red")
     plotter.camera.position, plotter.camera.focal_point = (9, 0, 0), (10, 0, 0)
     plotter.reset_camera_clipping_range()
-    share = visible.share_of_data(plotter)
+    share = render.share_of_data(plotter)
     plotter.close()
     assert share == 0
 

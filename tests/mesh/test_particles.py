@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.mesh import drift as drift_module
-from vizlight.mesh.drift import Drift
+from vizlight.mesh import particles as drift_module
+from vizlight.mesh.particles import Drift
 from vizlight.vtk import polylines
 
 SPACING, LENGTH = 0.5, 1.5
