@@ -43,7 +43,7 @@ SECTIONS = {
     },
     "What is the shape?": {
         "plot_read_shape": "Folds of a brain in gray, and with warm and cold slopes under a sky",
-        "plot_sky": "Terrain, brain, coral, part and fibres: in gray, and in warm and cold light with dark folds",
+        "plot_sky": "Terrain, brain, coral, part and fibres: in gray, and in warm and cold light",
         "plot_highlights": "Balls in six rows, with round highlights and some that wrap around",
         "plot_isoluminance": "Solids in bands of equal luminance between black contours",
     },
