@@ -47,7 +47,7 @@ WITHOUT = (
 #: How normals are turned, by ``facing``; otherwise they stay as they are.
 TOWARD: dict[str, Literal["eye", "face"]] = {"auto": "face", "eye": "eye"}
 SUFFIX = ".py"
-#: Number of colours by which ParaView is told a map.
+#: Number of colours of a map that is passed to ParaView.
 COLORS = 33
 _COLORED = string.Template("""\
 ColorBy(display, ("POINTS", $name))

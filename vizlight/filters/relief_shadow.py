@@ -158,7 +158,7 @@ class Shadows(NamedTuple):
     def recorded(self, options: ReliefOptions, scene: Scene) -> Array | None:
         """Return t of each point from its arrays, None where they are of other ground or light.
 
-        Of several lights a mesh has the mean alone, unless it was lit with ``components``.
+        With several lights a mesh holds their mean, and each of them if lit with ``components``.
         """
         name, count = options.name, len(self.lights)
         record, ours = records.read(self.surface, name) or {}, records.made(self.surface, name)

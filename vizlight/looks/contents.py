@@ -196,14 +196,9 @@ class Contents:
         words = []
         for data in (self.mesh.point_data, self.mesh.cell_data):
             for name, rows in data.items():
-                values, name_words = np.asarray(rows), _words(name)
-                is_number = name_words[-1] in _NO_DATUM or not _NUMBERS.isdisjoint(name_words)
-                if (
-                    is_number
-                    or values.ndim != 1
-                    or values.dtype.kind not in "fiu"
-                    or not len(values)
-                ):
+                values = np.asarray(rows)
+                is_one_number = values.ndim == 1 and values.dtype.kind in "fiu" and len(values)
+                if not is_one_number or _are_numbers(_words(name)):
                     continue
                 finite = values[np.isfinite(values)]
                 if not len(finite):
@@ -337,8 +332,7 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     words = _words(name)
     # VTK numbers the groups of an .obj file, most of which are drawing aids.
     of_kinds = name != "GroupIds" and not _KIND_WORDS.isdisjoint(words)
-    numbers = words[-1] in _NO_DATUM or not _NUMBERS.isdisjoint(words)
-    if named and (words[0] == "vtk" or (numbers and not of_kinds)):
+    if named and (words[0] == "vtk" or (_are_numbers(words) and not of_kinds)):
         return None
     if named and (_is_table(name) or name in _TABLES):
         return None
@@ -372,6 +366,11 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         ground = _HEIGHTS.search(lower) and not _NO_GROUND.search(lower)
         role = "heights" if ground else "values"
     return Named(name, role, of_cells, distinct, low, high)
+
+
+def _are_numbers(words: list[str]) -> bool:
+    """Return whether the words of a name are those of numbers or places, which are no data."""
+    return words[-1] in _NO_DATUM or not _NUMBERS.isdisjoint(words)
 
 
 def _are_shares(words: list[str], values: Raw) -> bool:

@@ -514,7 +514,7 @@ class _Reader:
             self.said.notes.append(f"left out, on other axes: {', '.join(left)}")
         self.said.notes += fills.say(self.source, words)
         if places is not None:
-            # Components are told by the names and units of the arrays.
+            # Components show by the names and units of the arrays.
             meaning.attach(grid, self.said)
             ordered = [
                 np.take(np.take(part, axes[1].order, 0), axes[0].order, 1) for part in places

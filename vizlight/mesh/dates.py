@@ -36,7 +36,7 @@ _ROUND = (
         for n in (10**p, 2 * 10**p, 5 * 10**p)
     ),
 )
-#: Parts of a range in which the time of a date is told.
+#: Number of parts of a range: dates that differ by less are one.
 _FINEST = 1 << 30
 #: Unit of times that are dates themselves, such as 20010215.5.
 _ABSOLUTE = "day as %Y%m%d"

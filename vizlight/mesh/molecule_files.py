@@ -32,8 +32,8 @@ _NUMBERS = re.compile(r"\s*-?\d+[\d.]*\s+-?\d")
 def of_gro(path: Path) -> pv.PolyData:
     """Return the first frame of a GROMACS file in angstroms, its bonds by the distances of atoms.
 
-    Elements are told by the names of atoms; where no atoms are joined these are beads, which have
-    none.
+    The names of atoms give their elements. Where no atoms are joined they are beads, which have no
+    element.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ _GROUPS = ("Anchor", "Billboard", "Collision", "Group", "LOD", "Switch")
 _CHILDREN = ("children", "level", "choice")
 #: Fields of three numbers for each row, which VTK takes as they come, by the node that has them.
 _TRIPLES = {"Coordinate": "point", "Normal": "vector", "Color": "color"}
-#: Places of a shape by which its transforms are told.
+#: Places of a shape that show its transforms.
 _ORIGIN, _AXES = np.zeros(3), np.eye(3)
 
 

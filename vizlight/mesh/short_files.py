@@ -126,7 +126,7 @@ def _netcdf(file: BinaryIO) -> str:
             if end
             else "its header is not whole"
         )
-    # SciPy does not map this version: nothing can be told.
+    # SciPy does not map this version: nothing can be checked.
     if head.startswith(_LARGE):
         return ""
     if not head.startswith(_CLASSIC):

@@ -58,9 +58,9 @@ class Near(NamedTuple):
 def near(mesh: pv.DataSet, surface: DrawnTriangles, cells: Indices, light: LightOptions) -> Near:
     """Return the surroundings of some triangles of a mesh, with the normals of the whole.
 
-    Normals are means over the faces around a point, and over points that slivers join. Which side
-    of a surface is outside is not known of a part of it. Whether its sharp edges are creases, which
-    ``feature_angle="auto"`` asks, is told by the edges of these surroundings.
+    Normals are means over the faces around a point, and over points that slivers join. A part
+    does not show which side of the surface is outside. ``feature_angle="auto"`` decides by the
+    edges of these surroundings whether sharp edges are creases.
 
     Parameters
     ----------
