@@ -128,7 +128,7 @@ def heading(view: Eye = None, /) -> Scene:
 
 
 def shape(view: Eye = None, /) -> Scene:
-    """Return a scene in which hue and lightness tell the normal of a surface.
+    """Return a scene in which lightness and tint tell the normal of a surface.
 
     A cream lamp from above, and weaker blue and brown ones from the right and the left: a surface
     looks like one thing in daylight, bright where it faces up, brown to the lower left and blue to
