@@ -275,8 +275,8 @@ def kinds(
     Returns
     -------
     pyvista.LookupTable
-        Table from half below the least kind to half above the largest; numbers between two kinds
-        have the colour of missing values, a light grey.
+        Table from half below the least kind to half above the largest; other numbers have the
+        colour of missing values, a light grey.
 
     Raises
     ------
@@ -313,7 +313,7 @@ def kinds(
     if len(rows) == 1:
         shades[1] = shades[0]
     table.values = shades
-    table.nan_color = MISSING
+    table.nan_color = table.below_range_color = table.above_range_color = MISSING
     table.scalar_range = (float(rows[0]) - 0.5, float(rows[-1]) + 0.5)
     table.annotations = {float(value): names.get(value, f"{value:g}") for value in rows}
     return table

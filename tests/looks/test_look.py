@@ -346,6 +346,21 @@ def test_labels_of_an_image_have_the_smooth_surface_of_what_has_a_label(tmp_path
     assert any("colours repeat, and have no key" in note for note in look.notes)
 
 
+def test_of_many_kinds_small_ones_are_grey_where_a_few_fill_nearly_all():
+    sheet = pv.ImageData(dimensions=(101, 11, 1))
+    labels = np.minimum(np.arange(1000) // 60, 15) + 10
+    labels[[0, 1]] = 3, 40
+    sheet.cell_data["label"] = labels
+    look = vizlight.look(sheet, size=(120, 80))
+    assert "label has 18 kinds: the 2 smallest are grey" in look.notes
+    assert look.key[0]["title"] == "label; grey: 2 small ones"
+    table = look.key[0]["cmap"]
+    assert table.scalar_range == (9.5, 25.5)
+    for value, is_grey in ((3, True), (40, True), (10, False), (25, False)):
+        color = pv.Color(table.map_value(value))
+        assert (color == pv.Color(vizlight.maps.MISSING)) == is_grey
+
+
 def test_a_solid_whose_least_kind_is_0_is_drawn_whole():
     grid = pv.ImageData(dimensions=(5, 5, 5)).cast_to_unstructured_grid()
     grid["group"] = (np.asarray(grid.points)[:, 2] > 2).astype(np.int32)

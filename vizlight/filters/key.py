@@ -142,7 +142,7 @@ def key(
         names = _names_of(cmap)
         if names:
             _put_words(mesh, NAMES, names)
-        if isinstance(cmap, pv.LookupTable):
+        elif isinstance(cmap, pv.LookupTable):
             beyond = (cmap.GetUseBelowRangeColor(), cmap.GetUseAboveRangeColor())
             if (apart := color_below(cmap)) is not None:
                 mesh = _with_swatch(mesh, apart)

@@ -25,6 +25,8 @@ Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
 GHOSTS = "vtkGhostType"
 #: Most rows of an array, and most cells, that are looked at.
 SAMPLE = 20_000
+#: Share of the rows of an array of kinds that is nearly all of them.
+NEARLY_ALL = 0.97
 #: Largest share of runs of equal labels that have one row only: regions are larger than that, while
 #: the edges of a scan pass through all its values.
 ALONE = 0.5
@@ -408,8 +410,23 @@ def _are_labels(values: Raw) -> bool:
     return len(jumps) > 0 and float(np.median(jumps)) > 1
 
 
-def kinds_of(mesh: pv.DataSet, name: str) -> Sequence[float]:
-    """Return the distinct values of an array of kinds, of all its rows."""
+def kinds_of(mesh: pv.DataSet, name: str, most: int | None = None) -> Sequence[float]:
+    """Return the distinct values of an array of kinds, of all its rows.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh.
+    name : str
+        Name of the array.
+    most : int, optional
+        Number of kinds from which the largest alone are returned, if these fill nearly all.
+    """
     values = np.asarray(mesh.point_data[name] if name in mesh.point_data else mesh.cell_data[name])
-    kinds: list[float] = np.unique(values[np.isfinite(values)]).tolist()
-    return kinds
+    kinds, counts = np.unique(values[np.isfinite(values)], return_counts=True)
+    if most is not None and len(kinds) > most:
+        largest = np.sort(np.argsort(-counts, kind="stable")[:most])
+        if counts[largest].sum() >= NEARLY_ALL * counts.sum():
+            kinds = kinds[largest]
+    every: list[float] = kinds.tolist()
+    return every

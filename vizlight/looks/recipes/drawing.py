@@ -45,6 +45,8 @@ ON_BANDS, ON_GROUND, GROUND = "vizlight.bands", "vizlight.amounts", "#fbfbf8"
 #: the picture is 85 mm wide.
 THIN = 1.5 / (85 / 25.4 * 300)
 
+#: Most kinds that have a key: more of them share colours.
+MOST_IN_KEY = 16
 #: Colour of a value that is the only one.
 ONLY = "#4477aa"
 #: Colour of the borders of surfaces, and keywords of what stands beside the data.
@@ -688,7 +690,7 @@ def range_of(mesh: pv.DataSet, name: str) -> tuple[float, float]:
 
 def colors_of_kinds(mesh: Step, array: Named, keywords: Keywords) -> Keywords:
     """Return the keywords that give each kind a colour of its own."""
-    kinds = kinds_of(mesh.run(), array.name)
+    kinds = kinds_of(mesh.run(), array.name, MOST_IN_KEY)
     names = meaning.flags(mesh.run(), array.name)
     if "cmap" not in keywords and len(kinds) == 1 and kinds[0] not in names:
         return keywords | {"cmap": _of_one(kinds[0])}

@@ -12,6 +12,7 @@ from vizlight.filters.fur import LENGTH
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
+    MOST_IN_KEY,
     ON_SURFACES,
     Drawing,
     Layer,
@@ -33,8 +34,6 @@ if TYPE_CHECKING:
 
 #: Colour of what is seen face on and has no data, and most cells whose edges are drawn on it.
 GREY, MOST_WITH_EDGES = "#9a9a9a", 5000
-#: Most kinds that have a key: more of them share colours.
-MOST_IN_KEY = 16
 
 
 def values(case: Case) -> Drawing:
@@ -90,7 +89,12 @@ def values(case: Case) -> Drawing:
     if array.role == "colors" and (bands := meaning.of(mesh.run()).arrays.get(array.name, {})):
         words = f"{bands['long_name']} as red, green and blue"
     notes = [note] if note else []
-    if array.role == "kinds" and (count := len(kinds_of(mesh.run(), array.name))) > MOST_IN_KEY:
+    kinds = kinds_of(mesh.run(), array.name) if array.role == "kinds" else ()
+    shown_kinds = kinds_of(mesh.run(), array.name, MOST_IN_KEY) if kinds else ()
+    if rest := len(kinds) - len(shown_kinds):
+        notes = [f"{array.name} has {len(kinds)} kinds: the {rest} smallest are grey"]
+        keys = [keys[0] | {"title": f"{keys[0]['title']}; grey: {rest} small ones"}]
+    elif (count := len(kinds)) > MOST_IN_KEY:
         notes = [f"{array.name} has {count} kinds: colours repeat, and have no key"]
         # A key of a kind without a name is its title alone.
         table = Step("", "vizlight.maps.kinds", {0: " "})
