@@ -57,6 +57,42 @@ def test_finer_eddies_are_read_worse_until_chance():
     assert found[0].scale.median > 4 * found[-1].scale.median
 
 
+def test_an_empty_picture_says_chance_and_why_of_all_questions():
+    random = np.random.default_rng(5)
+    start = random.uniform(-1, 1, (40, 1, 3))
+    way = random.normal(size=(40, 1, 3))
+    points = start + np.linspace(-1, 1, 20)[:, np.newaxis] * way
+    strokes = pv.PolyData(
+        points.reshape(-1, 3),
+        lines=np.insert(np.arange(800).reshape(40, 20), 0, 20, axis=1).ravel(),
+    )
+    strokes["v"] = np.repeat(way * random.uniform(0.2, 1, (40, 1, 1)), 20, axis=1).reshape(-1, 3)
+    ball = pv.Icosphere(nsub=3)
+    ball["s"] = np.asarray(ball.points)[:, 0]
+    gray, found = np.full((220, 330, 3), 0.5), {}
+    for mesh, key, how in (
+        (strokes, "heading", {"tangents": "v", "line_width": 3}),
+        (ball, ["shape", ("viridis", (-0.5, 0.5))], {"scalars": "s"}),
+    ):
+        read_of = vizlight.legibility(
+            mesh, picture=gray, camera=camera_on(mesh, (0, 0, 1), aspect=1.5), key=key, **FEW, **how
+        )
+        text, record = str(read_of), read_of.to_dict()
+        for name, reason in read_of.unreadable.items():
+            found[name] = getattr(read_of, name)
+            assert {figure for _, figure, _ in found[name].rows()[:-2]} == {"chance"}
+            assert f"{name} is unreadable: {reason}" in text
+            assert record[name]["chance"] == found[name].chance
+            assert found[name].bits < 0.3
+        assert read_of.scale is None or read_of.scale.pixels is None
+    assert set(found) == {
+        "direction", "slope", "heading", "sense", "order", "shape", "value", "speed",
+    }  # fmt: skip
+    for name in ("direction", "heading", "shape", "value"):
+        assert found[name].median == found[name].chance
+    assert found["slope"].spearman == found["speed"].spearman == 0
+
+
 @pytest.mark.parametrize("tilt", [0, 15, 30, 45, 60, 75])
 def test_a_plane_in_constant_light_has_no_shape(tilt):
     a = np.radians(tilt)

@@ -10,8 +10,8 @@ import pyvista as pv
 import vizlight
 from vizlight import Light, Scene, View
 from vizlight.draw.sources import with_sharp_edges
+from vizlight.observers import legibility, samples
 from vizlight.observers import near as near_cells
-from vizlight.observers import samples
 from vizlight.observers.near import near
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.drawn import DrawnSegments, DrawnTriangles
@@ -220,6 +220,20 @@ def test_normals_of_points_of_a_scan_are_those_of_the_whole(monkeypatch):
         found.inputs.normals[:][rows], whole.inputs.normals[:][chosen], atol=1e-6
     )
     assert samples.part_on(mesh, SCENE, LightOptions(), lit=False).inputs.normals is None
+    mesh["n"] = np.asarray(mesh.points)
+    mesh.point_data.active_normals_name = "n"
+    assert samples.part_on(mesh, SCENE, LightOptions()).inputs.normals is not None
+
+
+def test_many_solid_cells_are_split_on_their_surface_unless_their_cells_are_colored(monkeypatch):
+    monkeypatch.setattr(legibility, "WHOLE", 0)
+    ball = pv.SolidSphere(theta_resolution=20, phi_resolution=20, radius_resolution=3)
+    ball.clear_data()
+    ball.cell_data["c"] = np.arange(ball.n_cells)
+    smooth = LightOptions(feature_angle=None)
+    assert isinstance(legibility._split(ball, smooth, None), pv.PolyData)
+    # Means of cells are those of all around a point, inside too.
+    assert legibility._split(ball, smooth, "c") is ball
 
 
 def test_tangents_of_single_segments_are_those_of_the_joined_lines(monkeypatch):
@@ -230,6 +244,7 @@ def test_tangents_of_single_segments_are_those_of_the_joined_lines(monkeypatch):
     ids = mesh.lines.reshape(-1, 3)[:, 1:]
     mesh.points[ids[40, 1]] = mesh.points[ids[40, 0]]
     chosen = np.array([4, 39, 41, 200])
+    monkeypatch.setattr(near_cells, "BLOCK", 3)
     whole = samples.part_on(mesh, SCENE, LightOptions())
     monkeypatch.setattr(samples, "WHOLE", 0)
     part = samples.part_on(mesh, SCENE, LightOptions())
@@ -241,6 +256,16 @@ def test_tangents_of_single_segments_are_those_of_the_joined_lines(monkeypatch):
     sign = np.sign(np.einsum("ijk,ijk->i", rows, expected))[:, np.newaxis, np.newaxis]
     np.testing.assert_array_equal(sign * rows, expected)
     assert found.mesh.n_points == mesh.n_points
+
+
+def test_points_that_repeat_along_single_segments_have_the_tangent_of_the_whole(monkeypatch):
+    ids, points = np.arange(14), curls(14).points[:14].copy()
+    points[5:8] = points[4]
+    mesh = pv.PolyData(points, lines=np.column_stack([0 * ids[1:] + 2, ids[:-1], ids[1:]]).ravel())
+    whole = samples.part_on(mesh, SCENE, LightOptions()).inputs.tangents[:]
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    found = samples.part_on(mesh, SCENE, LightOptions()).near(np.array([3]))
+    np.testing.assert_array_equal(np.abs(found.inputs.tangents[:]), np.abs(whole[[3, 4]]))
 
 
 MATRIX = np.array([[0.8, -0.6, 0, 3], [0.6, 0.8, 0, -1], [0, 0.3, 2, 0], [0, 0, 0, 1.0]])

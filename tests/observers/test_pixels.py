@@ -172,3 +172,10 @@ def test_a_line_on_a_surface_is_seen_whole():
     parts = [Cells(plane.points, plane.regular_faces, 1.0), line]
     found = pixels.visible(parts, camera, (100, 100))
     assert np.count_nonzero(found.part == 1) >= 2 * 48
+
+
+def test_points_behind_the_eye_have_no_place_in_the_picture():
+    camera = pv.Camera()
+    camera.position, camera.focal_point, camera.up = (0, 0, 3), (0, 0, 0), (0, 1, 0)
+    found = pixels.in_pixels(camera, (60, 40), np.array([[0, 0, 0], [0, 0, 4.0]]))
+    np.testing.assert_allclose(found, [[30, 20], [np.nan, np.nan]])

@@ -33,7 +33,7 @@ class Figure:
     reason : str
         Why the question is unreadable, empty where it is not. The errors are then those of chance.
     chance : float
-        What guessing gives: of angles and values the median error, of a magnitude the rank
+        Result of guessing: of angles and values the median error, of a magnitude the rank
         correlation, of two sides the share that is told.
     """
 

@@ -457,7 +457,7 @@ def part_on(
 def _on_surface(
     mesh: pv.DataSet, options: LightOptions, values: Raw | None
 ) -> tuple[pv.DataSet, LightOptions, Raw | None]:
-    """Return the outer surface of a mesh with the rows of its arrays, and of what is given."""
+    """Return the outer surface of a mesh with its rows of arrays, options and values."""
     surface, origin = hull.outer_points(mesh)
     given: Keywords = {
         name: np.asarray(rows)[origin]

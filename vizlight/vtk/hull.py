@@ -336,8 +336,8 @@ BLOCK = 1 << 20
 def outer_points(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
     """Return :func:`outer_surface` without the data of cells, of many linear cells by blocks.
 
-    VTK's filter would take memory for each point and cell of the whole. What two blocks have in
-    common is no surface of the whole.
+    VTK's filter would take memory for each point and cell of the whole. Faces that two blocks have
+    in common are none of its surface.
     """
     hidden = mesh.GetPointData().HasArray(GHOSTS) or mesh.GetCellData().HasArray(GHOSTS)
     kind, *others = sorted(cell_types(mesh)) or [_POLYHEDRON]
