@@ -17,13 +17,11 @@ from vizlight import Light, Material, Scene, render
 from vizlight.geometry import manifolds
 from vizlight.model import brightness
 
-
-def wound(t):
-    """Return a curve that is wound on the torus."""
-    return 1.5 * np.cos(t), 1.5 * np.sin(t), 0.75 * np.cos(81 / 40 * t), 0.75 * np.sin(81 / 40 * t)
-
-
-curve = manifolds.parametric(wound, [(0, 80 * np.pi)], 4, resolution=64 * 192)
+# A curve that is wound on the torus.
+curve = manifolds.parametric(
+    lambda t: [f(w * t) * r for w, r in ((1, 1.5), (81 / 40, 0.75)) for f in (np.cos, np.sin)],
+    [(0, 80 * np.pi)], 4, resolution=64 * 192,
+)  # fmt: skip
 shapes = {1: curve, 2: manifolds.torus(1.5, 0.75, resolution=192)}
 matte = Material(ambient=0.0, diffuse=1.0, specular=0.0)
 # The torus below the curves is black, so that their brightness can be compared.

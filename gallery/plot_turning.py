@@ -17,18 +17,15 @@ import pyvista as pv
 
 import vizlight
 from vizlight import Light, Material, Scene, View, render
-from vizlight.geometry import manifolds
 
-turn, height = np.meshgrid(np.linspace(0, 2 * np.pi, 29)[1:], (-0.7, 0.0, 0.7))
 # The fibre over a point of the sphere is e^(i t) (z1, z2): its tangent is i times the point.
+number = np.arange(84 * 193).reshape(84, 193)
+height, turn, t = number // 5404 * 0.7 - 0.7, number // 193 * np.pi / 14, number % 193 * np.pi / 96
 first, second = np.sqrt((1 + height) / 2), np.sqrt((1 - height) / 2) * np.exp(-1j * turn)
-around = np.exp(2j * np.pi * np.arange(192) / 192)
-pairs = np.stack([np.outer(z, around).ravel() for z in (first, second)], axis=1)
-number = np.arange(len(pairs)).reshape(-1, 192)
-cells = np.stack([number, np.roll(number, -1, axis=1)], axis=-1).reshape(-1, 2)
-frame = (1j * pairs).view(float)[:, np.newaxis]
-fibres = vizlight.manifold(manifolds.Manifold(pairs.view(float), frame, cells))
-fibres["torus"] = np.repeat([0.0, 1.0, 2.0], fibres.n_points // 3)
+pairs = np.stack([first.ravel(), second.ravel()], axis=1) * np.exp(1j * t).reshape(-1, 1)
+fibres = pv.PolyData(np.zeros((number.size, 3)), lines=np.insert(number, 0, 193, axis=1))
+fibres["position"], fibres["frame"] = pairs.view(float), (1j * pairs).view(float)
+fibres["torus"] = height.ravel()
 light, eye = (kind(direction=(0.3, -1, 0.6, 0)) for kind in (Light, View))
 scene = Scene(lights=light, view=eye, material=Material(ambient=0.1, diffuse=0.9, specular=0))
 
@@ -39,8 +36,7 @@ plotter.enable_anti_aliasing("ssaa")
 plotter.vizlight.add_key(scene, question="slope", size=0.2)
 plotter.open_gif(mkdtemp() + "/turning.gif", fps=9)
 for angle in np.linspace(0, np.pi, 24, endpoint=False):
-    turned = {"rotation": ("xw", angle), "distance": 1.3, "light": "before"}
-    lit = vizlight.project(fibres, scene=scene, **turned)
+    lit = vizlight.project(fibres, scene=scene, rotation=("xw", angle), distance=1.3)
     lit = vizlight.tint(lit, "torus", cmap=["#74adfe", "#f689b3", "#cba656"])
     plotter.vizlight.add_mesh(lit, line_diameter=0.033, name="fibres", show_scalar_bar=False)
     plotter.write_frame()
