@@ -8,13 +8,12 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkTexture
 
+from vizlight._types import Array
 from vizlight.draw.glsl import HEIGHTS, Uniform
+from vizlight.mesh.casters import EvenField
 
 if TYPE_CHECKING:
     from vtkmodules.vtkRenderingCore import vtkActor
-
-    from vizlight._types import Array
-    from vizlight.mesh.casters import EvenField
 
 
 def attach(actor: vtkActor, field: EvenField) -> None:

@@ -19,6 +19,7 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextRenderer,
 )
 
+from vizlight._types import Array, Color
 from vizlight.draw.live import in_view, items
 from vizlight.draw.scalar_bars import LEAST, LETTER, LINE, wrapped
 from vizlight.draw.ticks import along_bar, numerals_of
@@ -27,8 +28,6 @@ from vizlight.filters.tint import RGB
 
 if TYPE_CHECKING:
     import pyvista as pv
-
-    from vizlight._types import Array, Color
 
 #: Distance from the edges, and height of letters, as shares of the shorter side of the picture.
 MARGIN, LETTERS = 0.025, 0.032

@@ -5,14 +5,18 @@ from __future__ import annotations
 import dataclasses
 import json
 import string
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check, files
+from vizlight._types import Given
 from vizlight.draw import dialects, glsl
+from vizlight.draw.glsl import Program
 from vizlight.draw.live import NORMALS, TANGENTS, Fragments, unfit, unfit_layout
 from vizlight.draw.sources import sources_in_scene
 from vizlight.filters.tint import color_table
@@ -21,19 +25,11 @@ from vizlight.scene.keywords import named
 from vizlight.scene.light import WHITE
 from vizlight.shading.display import NO_DATA, NO_DATA_NAME
 from vizlight.shading.inputs import Layout
-from vizlight.shading.options import LightOptions, ShadingOptions
-from vizlight.shading.plan import decide
+from vizlight.shading.options import Exponent, Facing, LightOptions, Model, ShadingOptions
+from vizlight.shading.plan import Plan, decide
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     import pyvista as pv
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Given
-    from vizlight.draw.glsl import Program
-    from vizlight.shading.options import Exponent, Facing, Model
-    from vizlight.shading.plan import Plan
 
 __all__ = ["Shader", "save", "shader"]
 

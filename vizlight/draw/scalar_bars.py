@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vizlight._types import Keywords
 from vizlight.shading.display import NO_DATA_NAME
 
 if TYPE_CHECKING:
     import pyvista as pv
     from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
-
-    from vizlight._types import Keywords
 
 #: Keywords that say how large a bar is and where it stands: with any of them it is left as asked.
 PLACED = {

@@ -8,6 +8,7 @@ eye by its own width, so that a surface on which it lies does not hide it.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +17,7 @@ from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkRenderingCore import vtkMapper
 
 from vizlight import _check
+from vizlight._types import Array, Foreign, Indices, Keywords
 from vizlight.draw import glsl
 from vizlight.draw.dialects import VTK, Replacement, replace
 from vizlight.draw.glsl import ALONG, END, HALO, Stroke, suffixed
@@ -24,11 +26,7 @@ from vizlight.vtk import polylines
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
-
-    from vizlight._types import Array, Foreign, Indices, Keywords
 
 #: Width in pixels above 1, as VTK draws no quads for narrower lines; also the least width of lines
 #: of a diameter, so that none breaks up.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +10,7 @@ import pyvista as pv
 import scipy
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Indices, Raw, Sparse
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.verify.between import Places, are_unit
@@ -18,11 +20,7 @@ from vizlight.vtk.cells import triangles as triangles_of
 from vizlight.vtk.hull import as_lagrange
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from vtkmodules.vtkCommonDataModel import vtkCellArray
-
-    from vizlight._types import Array, Bools, Indices, Raw, Sparse
 
 #: Number of bits of the smaller number of a pair.
 HALF = 31

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Array, Indices, VectorLike
+from vizlight._types import Array, Indices, VectorLike
 
 
 def relief_ratio(

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 from vtkmodules.vtkRenderingAnnotation import vtkCornerAnnotation, vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import vtkTextActor
 
+from vizlight._types import Array, Color
 from vizlight.draw.live import items
-from vizlight.draw.vector.files import ASCENT, DESCENT, LINE, Fill, Words
+from vizlight.draw.vector.files import ASCENT, DESCENT, LINE, Fill, Item, Words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     import pyvista as pv
     from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer, vtkTextProperty
-
-    from vizlight._types import Array, Color
-    from vizlight.draw.vector.files import Item
 
 __all__ = ["words_of"]
 
