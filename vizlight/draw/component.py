@@ -7,12 +7,13 @@ import importlib
 import weakref
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, get_args
+from typing import get_args
 
 import numpy as np
 import pyvista as pv
 from numpy.typing import ArrayLike
-from vtkmodules.vtkCommonCore import vtkWeakReference
+from vtkmodules.vtkCommonCore import vtkObject, vtkWeakReference
+from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
 from vizlight import _check
 from vizlight._types import ColorLike, Foreign, Given, Keywords, Raw
@@ -38,10 +39,6 @@ from vizlight.shading.display import titled
 from vizlight.shading.results import DEFAULT_NAME, unlit
 from vizlight.vtk.arrays import are_colors
 from vizlight.vtk.polylines import has_lines_only
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkCommonCore import vtkObject
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
 __all__ = ["Component", "add_recorded"]
 

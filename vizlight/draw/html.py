@@ -15,11 +15,12 @@ import zlib
 from collections.abc import Mapping, Sequence
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple, cast
+from typing import Literal, NamedTuple, cast
 
 import numpy as np
 import pyvista as pv
 from PIL import Image
+from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
 from vizlight import _check
 from vizlight._questions import QUESTIONS, Question
@@ -45,10 +46,6 @@ from vizlight.shading.display import NO_DATA_NAME, numerals
 from vizlight.shading.plan import Plan, decide
 from vizlight.shading.results import DEFAULT_NAME
 from vizlight.vtk.normals import is_scan
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
-
 
 #: Largest number of colours of a scalar bar, and of those that have each a part of it.
 COLORS, CLASSES = 64, 32

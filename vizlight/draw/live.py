@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkCollection
+from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
 
 from vizlight import _check
 from vizlight._types import AnyArray, Array, Bools, Foreign, Indices, Keywords, Raw
@@ -33,9 +35,7 @@ from vizlight.shading.plan import Plan, decide
 from vizlight.vtk.arrays import are_colors, is_of_cells
 
 if TYPE_CHECKING:
-    from vtkmodules.vtkCommonCore import vtkCollection
     from vtkmodules.vtkCommonMath import vtkMatrix4x4
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
 
 
 #: Place where the light is computed.

@@ -9,12 +9,11 @@ eye by its own width, so that a surface on which it lies does not hide it.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import reference
-from vtkmodules.vtkRenderingCore import vtkMapper
+from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper, vtkRenderer
 
 from vizlight import _check
 from vizlight._types import Array, Foreign, Indices, Keywords
@@ -24,9 +23,6 @@ from vizlight.draw.glsl import ALONG, END, HALO, Stroke, suffixed
 from vizlight.model import formulas
 from vizlight.vtk import polylines
 from vizlight.vtk.polylines import has_lines_only
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
 #: Width in pixels above 1, as VTK draws no quads for narrower lines; also the least width of lines
 #: of a diameter, so that none breaks up.

@@ -381,12 +381,12 @@ def _warn_of_wide(mesh: pv.DataSet, t: Array, raster: float | None) -> None:
         )
 
 
-def sun_direction(sun: object, name: str = "sun") -> Array:
+def sun_direction(sun: object) -> Array:
     """Return the direction toward the sun from its azimuth and altitude in degrees."""
-    angles = _check.floats(name, sun)
+    angles = _check.floats("sun", sun)
     if angles.shape != (2,):
         expected = "two angles in degrees, (azimuth, altitude)"
-        raise ValueError(_check.message(name, expected, _check.describe(sun)))
+        raise ValueError(_check.message("sun", expected, _check.describe(sun)))
     return sky.toward(angles[0], angles[1])
 
 

@@ -437,9 +437,7 @@ def kept(mesh: pv.DataSet) -> Sided | None:
 NORMALS = "vizlight normals"
 
 
-def with_normals(
-    surface: object, view: View | None, angle: FeatureAngle = None, name: str = "surface"
-) -> pv.PolyData:
+def with_normals(surface: object, view: View | None, angle: FeatureAngle = None) -> pv.PolyData:
     """Return the triangles of a surface as a new mesh with the unit point normals ``NORMALS``.
 
     Points are split at edges sharper than the angle; without one a warning is given if normals
@@ -452,7 +450,7 @@ def with_normals(
     ValueError
         If it has no faces.
     """
-    own = split_where_computed(blocks.surface(surface, name), angle)
+    own = split_where_computed(blocks.surface(surface, "surface"), angle)
     # Vertices and lines are left out, because every cell must be a triangle.
     triangles = pv.PolyData(faces_only(own))
     for key, array in own.point_data.items():

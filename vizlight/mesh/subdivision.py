@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 import scipy
+from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from vizlight import _check
 from vizlight._types import Array, Bools, Indices, Raw, Sparse
@@ -18,9 +18,6 @@ from vizlight.vtk import hull, polylines
 from vizlight.vtk.cells import connectivity, has_faces
 from vizlight.vtk.cells import triangles as triangles_of
 from vizlight.vtk.hull import as_lagrange
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 #: Number of bits of the smaller number of a pair.
 HALF = 31

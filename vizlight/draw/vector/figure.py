@@ -6,10 +6,11 @@ import dataclasses
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkRenderingCore import vtkActor
 
 from vizlight import _check
 from vizlight._types import Array, Bools, Color, Slice
@@ -24,9 +25,6 @@ from vizlight.geometry.contours.faces import faces
 from vizlight.geometry.contours.levels import levels
 from vizlight.geometry.contours.palette import FEWER, nearest_colors, palette_of
 from vizlight.geometry.contours.steady import steadied
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkRenderingCore import vtkActor
 
 __all__ = ["save_graphic"]
 

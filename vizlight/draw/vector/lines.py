@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
 
 from vizlight._types import Array, Bools, Color, Indices
 from vizlight.draw.cameras import pixel_sizes
@@ -18,9 +19,6 @@ from vizlight.draw.vector.samples import Samples, actors_of
 from vizlight.geometry.contours.palette import nearest_colors
 from vizlight.geometry.contours.rings import SEEN, simplified
 from vizlight.vtk.polylines import cells_of, has_lines_only
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
 
 __all__ = ["Course", "Lines", "course_of", "lines_of", "strokes_of"]
 
