@@ -6,9 +6,9 @@ import json
 import struct
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 from numpy.typing import NDArray
 
 from vizlight import _check, files
@@ -25,9 +25,6 @@ from vizlight.scene import View
 from vizlight.scene.presets import AnyScene
 from vizlight.vtk.arrays import is_of_cells
 from vizlight.vtk.cells import has_faces
-
-if TYPE_CHECKING:
-    import pyvista as pv
 
 __all__ = ["save_gltf"]
 

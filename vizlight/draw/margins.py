@@ -6,9 +6,9 @@ import itertools
 import math
 import re
 import textwrap
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkRenderingCore import (
     vtkActor2D,
@@ -25,9 +25,6 @@ from vizlight.draw.scalar_bars import LEAST, LETTER, LINE, wrapped
 from vizlight.draw.ticks import along_bar, numerals_of
 from vizlight.filters.key import BEYOND, LEVELS, NAMES, RANGE, SCALE, SWATCH, TITLE, WORDS
 from vizlight.filters.tint import RGB
-
-if TYPE_CHECKING:
-    import pyvista as pv
 
 #: Distance from the edges, and height of letters, as shares of the shorter side of the picture.
 MARGIN, LETTERS = 0.025, 0.032

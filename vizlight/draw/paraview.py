@@ -8,9 +8,10 @@ import string
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+import pyvista as pv
 from numpy.typing import ArrayLike
 
 from vizlight import _check, files
@@ -27,9 +28,6 @@ from vizlight.shading.display import NO_DATA, NO_DATA_NAME
 from vizlight.shading.inputs import Layout
 from vizlight.shading.options import Exponent, Facing, LightOptions, Model, ShadingOptions
 from vizlight.shading.plan import Plan, decide
-
-if TYPE_CHECKING:
-    import pyvista as pv
 
 __all__ = ["Shader", "save", "shader"]
 

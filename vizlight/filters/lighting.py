@@ -5,9 +5,9 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.mesh import bundles, normals, records, subdivision
@@ -21,9 +21,6 @@ from vizlight.vtk import parts as vtk_parts
 from vizlight.vtk.batches import Batch, batches
 from vizlight.vtk.normals import Sided, Vote
 from vizlight.vtk.parts import Part
-
-if TYPE_CHECKING:
-    import pyvista as pv
 
 #: Options that may name an array.
 _ARRAYS = ("tangents", "normals", "positions", "conditioned", "occlusion")

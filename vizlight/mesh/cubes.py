@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight._types import Array
 from vizlight.mesh import meaning, molecules
 from vizlight.mesh.brains import of_affine
-
-if TYPE_CHECKING:
-    import pyvista as pv
 
 #: A bohr in angstroms, by CODATA 2018.
 BOHR = 0.529177210903

@@ -5,9 +5,10 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check
 from vizlight._types import Array, Bools, Indices
@@ -21,9 +22,6 @@ from vizlight.shading.options import LightOptions
 from vizlight.verify.between import Between, Places, columns, error_between, random_places
 from vizlight.vtk.cells import field_data, has_faces
 from vizlight.vtk.parts import Part
-
-if TYPE_CHECKING:
-    import pyvista as pv
 
 #: Number of points that a refined mesh may have by default, if it has not half of them already.
 MANY = 1_000_000

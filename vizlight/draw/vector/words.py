@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 from vtkmodules.vtkRenderingAnnotation import vtkCornerAnnotation, vtkScalarBarActor
-from vtkmodules.vtkRenderingCore import vtkTextActor
+from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer, vtkTextActor, vtkTextProperty
 
 from vizlight._types import Array, Color
 from vizlight.draw.live import items
 from vizlight.draw.vector.files import ASCENT, DESCENT, LINE, Fill, Item, Words
-
-if TYPE_CHECKING:
-    import pyvista as pv
-    from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer, vtkTextProperty
 
 __all__ = ["words_of"]
 
