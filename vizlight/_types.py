@@ -12,10 +12,9 @@ if TYPE_CHECKING:
     import pyvista as pv
     from vtkmodules.vtkCommonDataModel import vtkDataSet
 
-    #: A dataset of VTK, which one of PyVista is too; what reads it needs VTK alone.
-    Dataset: TypeAlias = vtkDataSet | pv.DataSet
-
 # What a type checker cannot know has one of these names; no other module says Any.
+#: A dataset of VTK, which one of PyVista is too; what reads it needs VTK alone.
+Dataset: TypeAlias = "vtkDataSet | pv.DataSet"
 #: What a library without types returns: objects of VTK and PyVista, readers of files.
 Foreign: TypeAlias = Any
 #: Sparse matrix of SciPy: shares of points in other points.

@@ -14,14 +14,16 @@ import shutil
 import time
 import uuid
 import zlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
 from vizlight import _check, _supervise, _trials
+from vizlight._types import Foreign, Raw
 from vizlight.mesh import (
     blocks,
     brains,
@@ -41,6 +43,7 @@ from vizlight.mesh import (
     short_files,
     tables,
 )
+from vizlight.mesh.blocks import DataSetT
 from vizlight.mesh.creases import creases
 from vizlight.mesh.derived import (
     check_dataset,
@@ -64,11 +67,6 @@ try:
 except ImportError:  # on Windows
     fcntl = None  # type: ignore[assignment]
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-
-    from vizlight._types import Foreign, Raw
-    from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
     "FileError", "atoms_in", "backbone", "creases", "layer_of", "layers", "read", "read_parts",

@@ -9,14 +9,12 @@ import os
 import platform
 import subprocess
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, cast, get_args
+from typing import Literal, cast, get_args
 
 from vizlight import _cache, _check
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 __all__ = ["Backend", "BackendError", "Probe", "choose_backend", "probe"]
 

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array, Indices
 from vizlight.draw.cameras import footprint
 from vizlight.draw.map_frames import rectangle
 from vizlight.draw.ticks import even_numbers, round_length
 from vizlight.mesh import blocks
 from vizlight.vtk import letters
 from vizlight.vtk.letters import DIGIT
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Array, Indices
 
 __all__ = ["box_axes", "box_edges", "captions"]
 

@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING, TypeAlias
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TypeAlias
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import ArrayLike
+from vtkmodules.vtkRenderingCore import vtkCamera
 
 from vizlight import _check
+from vizlight._types import Array
 from vizlight.mesh.blocks import all_blocks
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
-    from numpy.typing import ArrayLike
-    from vtkmodules.vtkRenderingCore import vtkCamera
-
-    from vizlight._types import Array
 
 __all__ = ["camera_on", "over_shoulder"]
 

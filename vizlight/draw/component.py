@@ -5,13 +5,18 @@ from __future__ import annotations
 import dataclasses
 import importlib
 import weakref
-from typing import TYPE_CHECKING, get_args
+from collections.abc import Sequence
+from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkCommonCore import vtkWeakReference
+from numpy.typing import ArrayLike
+from vtkmodules.vtkCommonCore import vtkObject, vtkWeakReference
+from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
 from vizlight import _check
+from vizlight._types import ColorLike, Foreign, Given, Keywords, Raw
 from vizlight.draw import keywords
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.html import PageMesh, write_page
@@ -23,28 +28,17 @@ from vizlight.draw.sources import sources_of, tinted
 from vizlight.draw.strokes import check_widths, enlarge, has_pass, stroke_of
 from vizlight.filters import relight
 from vizlight.filters.key import WORDS, key, question_of
+from vizlight.filters.relight import Source
 from vizlight.filters.tint import RGB, default_map, default_nan_color, values_of
 from vizlight.mesh import blocks, records
 from vizlight.mesh.strokes import PHASE, WIDTH
 from vizlight.scene import Material, Scene
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import optional_scene, required_scene
+from vizlight.scene.presets import AnyScene, optional_scene, required_scene
 from vizlight.shading.display import titled
 from vizlight.shading.results import DEFAULT_NAME, unlit
 from vizlight.vtk.arrays import are_colors
 from vizlight.vtk.polylines import has_lines_only
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from numpy.typing import ArrayLike
-    from vtkmodules.vtkCommonCore import vtkObject
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
-
-    from vizlight._types import ColorLike, Foreign, Given, Keywords, Raw
-    from vizlight.filters.relight import Source
-    from vizlight.scene.presets import AnyScene
 
 __all__ = ["Component", "add_recorded"]
 

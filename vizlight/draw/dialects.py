@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from vizlight.draw import glsl
-from vizlight.draw.glsl import Varying, suffixed
+from vizlight.draw.glsl import Program, Uniform, Varying, suffixed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from vtkmodules.vtkRenderingCore import vtkActor
-
-    from vizlight.draw.glsl import Program, Uniform
 
 #: Matrix from the coordinates of a buffer of VTK to world coordinates.
 WORLD = "MCWCMatrix"

@@ -10,26 +10,22 @@ from __future__ import annotations
 import dataclasses
 import functools
 import re
+from collections.abc import Iterator, Sequence
 from importlib import resources
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from vizlight import _check
+from vizlight._types import Color, Value
 from vizlight.model import formulas
+from vizlight.scene import DepthCue, Light, Scene, View
 from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.shading import display
 from vizlight.shading.algebra import Lamp, Total
+from vizlight.shading.plan import Plan
 from vizlight.shading.symbols import Symbol, Writer, needed
 from vizlight.shading.terms import light
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from vizlight._types import Color, Value
-    from vizlight.scene import DepthCue, Light, Scene, View
-    from vizlight.shading.plan import Plan
-
 
 _INPUTS = {
     "points": ("vizP", "vec3"),

@@ -4,33 +4,27 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
 
 from vizlight import _check, files
+from vizlight._types import Array, Given, Indices, Keywords, Raw
 from vizlight._version import __version__
 from vizlight.draw.keywords import LIGHT
 from vizlight.draw.live import lifted
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, sources_in_scene, tinted
-from vizlight.filters.tint import color_table, map_colors, values_of, values_of_blocks
+from vizlight.filters.relight import Source
+from vizlight.filters.tint import ColorMap, color_table, map_colors, values_of, values_of_blocks
 from vizlight.mesh import blocks
 from vizlight.mesh.normals import split_values
 from vizlight.scene import View
+from vizlight.scene.presets import AnyScene
 from vizlight.vtk.arrays import is_of_cells
 from vizlight.vtk.cells import has_faces
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    import pyvista as pv
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Given, Indices, Keywords, Raw
-    from vizlight.filters.relight import Source
-    from vizlight.filters.tint import ColorMap
-    from vizlight.scene.presets import AnyScene
 
 __all__ = ["save_gltf"]
 

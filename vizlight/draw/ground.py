@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkRenderingCore import vtkTexture
+from vtkmodules.vtkRenderingCore import vtkActor, vtkTexture
 
+from vizlight._types import Array
 from vizlight.draw.glsl import HEIGHTS, Uniform
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkRenderingCore import vtkActor
-
-    from vizlight._types import Array
-    from vizlight.mesh.casters import EvenField
+from vizlight.mesh.casters import EvenField
 
 
 def attach(actor: vtkActor, field: EvenField) -> None:

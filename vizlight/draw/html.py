@@ -12,49 +12,40 @@ import json
 import re
 import string
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple, cast
+from typing import Literal, NamedTuple, cast
 
 import numpy as np
 import pyvista as pv
 from PIL import Image
+from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 
 from vizlight import _check
 from vizlight._questions import QUESTIONS, Question
+from vizlight._types import Array, ColorLike, Foreign, Given, Indices, Keywords, Raw
 from vizlight.draw import backends, dialects, glsl, ground
 from vizlight.draw.keywords import is_cloud
-from vizlight.draw.live import NORMALS, TANGENTS, Fragments, items, matrix_of
+from vizlight.draw.live import NORMALS, TANGENTS, Fragments, LightAt, Live, items, matrix_of
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
 from vizlight.draw.strokes import DEPTH
 from vizlight.files import check_output, replace_file
 from vizlight.filters import relight
 from vizlight.filters.key import annotated
+from vizlight.filters.relight import Source
 from vizlight.mesh import blocks, records, strokes
+from vizlight.mesh.casters import EvenField
 from vizlight.mesh.polylines import backdrop
 from vizlight.model import kernels
 from vizlight.scene import DepthCue, Light, Scene, View
 from vizlight.scene.conversion import lights_of
 from vizlight.scene.light import WHITE
-from vizlight.scene.presets import PRESETS, optional_scene, preset_of
+from vizlight.scene.presets import PRESETS, AnyScene, optional_scene, preset_of
 from vizlight.shading.display import NO_DATA_NAME, numerals
-from vizlight.shading.plan import decide
+from vizlight.shading.plan import Plan, decide
 from vizlight.shading.results import DEFAULT_NAME
 from vizlight.vtk.normals import is_scan
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
-
-    from vizlight._types import Array, ColorLike, Foreign, Given, Indices, Keywords, Raw
-    from vizlight.draw.live import LightAt, Live
-    from vizlight.filters.relight import Source
-    from vizlight.mesh.casters import EvenField
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.plan import Plan
-
 
 #: Largest number of colours of a scalar bar, and of those that have each a part of it.
 COLORS, CLASSES = 64, 32

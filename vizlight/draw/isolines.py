@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
 import pyvista as pv
@@ -13,19 +14,14 @@ import scipy
 from matplotlib.path import Path
 
 from vizlight import _check, _words
+from vizlight._types import Array, Bools, Indices
 from vizlight.mesh import blocks, polylines, records
 from vizlight.vtk import letters as words_of
 from vizlight.vtk.cells import connectivity
 from vizlight.vtk.letters import DIGIT
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
-    from typing import TypeAlias
-
-    from vizlight._types import Array, Bools, Indices
-
-    #: Pieces of isolines, shape (N, 2) each, with their levels.
-    Pieces: TypeAlias = list[tuple[Array, float]]
+#: Pieces of isolines, shape (N, 2) each, with their levels.
+Pieces: TypeAlias = list[tuple[Array, float]]
 
 __all__ = ["isolines"]
 

@@ -4,25 +4,20 @@ from __future__ import annotations
 
 import inspect
 import itertools
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import ArrayLike, NDArray
 from pyvista.plotting.colors import get_cycler
 
 from vizlight import _check
+from vizlight._types import Keywords, Raw
 from vizlight.filters import relight
 from vizlight.mesh import blocks, records
+from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
 from vizlight.shading.options import FeatureAngle, LightOptions
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from vizlight._types import Keywords, Raw
-    from vizlight.scene import Scene
 
 #: Options of light that a live light takes; an actor has a name of its own.
 LIGHT = {*inspect.signature(LightOptions).parameters} - {"name", "components"}

@@ -7,41 +7,35 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkCollection
+from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
 
 from vizlight import _check
+from vizlight._types import AnyArray, Array, Bools, Foreign, Indices, Keywords, Raw
 from vizlight.draw import dialects, glsl, ground, strokes
 from vizlight.draw.glsl import Stroke, Uniform
 from vizlight.filters import lighting, relight
+from vizlight.filters.relight import Source
 from vizlight.filters.tint import light_on_colors, map_colors, values_of
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
-from vizlight.scene import Material, Scene, View
+from vizlight.scene import Light, Material, Scene, View
 from vizlight.scene.conversion import LARGEST_POWER, is_light_kit, lights_of
 from vizlight.scene.light import NO_ATTENUATION, WHITE, default_lights
-from vizlight.shading.display import NO_DATA, displayable, for_colors, on_colors
-from vizlight.shading.inputs import Layout
-from vizlight.shading.plan import decide
+from vizlight.shading.display import NO_DATA, Bytes, displayable, for_colors, on_colors
+from vizlight.shading.engine import Shading
+from vizlight.shading.inputs import ArraySource, Layout, ShadingInputs
+from vizlight.shading.options import ShadingOptions
+from vizlight.shading.plan import Plan, decide
 from vizlight.vtk.arrays import are_colors, is_of_cells
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
-
-    from vtkmodules.vtkCommonCore import vtkCollection
     from vtkmodules.vtkCommonMath import vtkMatrix4x4
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
-
-    from vizlight._types import AnyArray, Array, Bools, Foreign, Indices, Keywords, Raw
-    from vizlight.filters.relight import Source
-    from vizlight.scene import Light
-    from vizlight.shading.display import Bytes
-    from vizlight.shading.engine import Shading
-    from vizlight.shading.inputs import ArraySource, ShadingInputs
-    from vizlight.shading.options import ShadingOptions
-    from vizlight.shading.plan import Plan
 
 
 #: Place where the light is computed.

@@ -8,21 +8,17 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array, Indices
 from vizlight.draw.ticks import even_numbers, round_length
 from vizlight.mesh import blocks, charts, dates, georeference, meaning, polylines
 from vizlight.vtk import letters
 from vizlight.vtk.letters import DIGIT, union
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from vizlight._types import Array, Indices
 
 __all__ = ["frame", "graticule"]
 

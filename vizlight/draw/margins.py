@@ -6,9 +6,9 @@ import itertools
 import math
 import re
 import textwrap
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkRenderingCore import (
     vtkActor2D,
@@ -19,16 +19,12 @@ from vtkmodules.vtkRenderingCore import (
     vtkTextRenderer,
 )
 
+from vizlight._types import Array, Color
 from vizlight.draw.live import in_view, items
 from vizlight.draw.scalar_bars import LEAST, LETTER, LINE, wrapped
 from vizlight.draw.ticks import along_bar, numerals_of
 from vizlight.filters.key import BEYOND, LEVELS, NAMES, RANGE, SCALE, SWATCH, TITLE, WORDS
 from vizlight.filters.tint import RGB
-
-if TYPE_CHECKING:
-    import pyvista as pv
-
-    from vizlight._types import Array, Color
 
 #: Distance from the edges, and height of letters, as shares of the shorter side of the picture.
 MARGIN, LETTERS = 0.025, 0.032

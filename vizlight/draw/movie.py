@@ -6,16 +6,18 @@ import importlib
 import itertools
 import os
 import warnings
-from collections.abc import Mapping, Sized
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sized
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import NDArray
 from PIL import Image
 
 from vizlight import _check
 from vizlight._progress import progress
+from vizlight._types import Foreign, Given, Raw
 from vizlight.draw import render
 from vizlight.draw.cameras import Mesh, common_bounds
 from vizlight.files import check_output, replace_file
@@ -23,19 +25,11 @@ from vizlight.filters.project import project
 from vizlight.filters.tint import RGB
 from vizlight.mesh import strokes
 from vizlight.mesh.blocks import all_blocks
-from vizlight.scene.presets import optional_scene
+from vizlight.scene import Scene
+from vizlight.scene.presets import AnyScene, optional_scene
 from vizlight.shading.results import DEFAULT_NAME
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
-
-    from numpy.typing import NDArray
-
-    from vizlight._types import Foreign, Given, Raw
-    from vizlight.scene import Scene
-    from vizlight.scene.presets import AnyScene
-
-    Picture = NDArray[np.uint8]
+Picture = NDArray[np.uint8]
 
 Item = TypeVar("Item")
 

@@ -6,17 +6,14 @@ import html
 import importlib.util
 import sys
 import weakref
-from typing import TYPE_CHECKING
 
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Foreign, Function
 
-if TYPE_CHECKING:
-    from vizlight._types import Foreign, Function
-
-    #: Takes a plotter and the options of the backend, returns what the notebook displays.
-    Handler = Function
+#: Takes a plotter and the options of the backend, returns what the notebook displays.
+Handler = Function
 
 #: Backends that draw in the browser, or may: there nothing computes the light.
 DRAWN_BY_THE_BROWSER = ("client", "html", "trame")

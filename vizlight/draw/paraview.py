@@ -5,14 +5,19 @@ from __future__ import annotations
 import dataclasses
 import json
 import string
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+import pyvista as pv
+from numpy.typing import ArrayLike
 
 from vizlight import _check, files
+from vizlight._types import Given
 from vizlight.draw import dialects, glsl
+from vizlight.draw.glsl import Program
 from vizlight.draw.live import NORMALS, TANGENTS, Fragments, unfit, unfit_layout
 from vizlight.draw.sources import sources_in_scene
 from vizlight.filters.tint import color_table
@@ -21,19 +26,8 @@ from vizlight.scene.keywords import named
 from vizlight.scene.light import WHITE
 from vizlight.shading.display import NO_DATA, NO_DATA_NAME
 from vizlight.shading.inputs import Layout
-from vizlight.shading.options import LightOptions, ShadingOptions
-from vizlight.shading.plan import decide
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import pyvista as pv
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Given
-    from vizlight.draw.glsl import Program
-    from vizlight.shading.options import Exponent, Facing, Model
-    from vizlight.shading.plan import Plan
+from vizlight.shading.options import Exponent, Facing, LightOptions, Model, ShadingOptions
+from vizlight.shading.plan import Plan, decide
 
 __all__ = ["Shader", "save", "shader"]
 

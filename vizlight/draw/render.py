@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import math
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypedDict, get_args
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import NDArray
 from vtkmodules.vtkRenderingCore import vtkProp3D
 
 from vizlight import _check
+from vizlight._types import Array, ColorLike, Foreign, Keywords
 from vizlight.draw.backends import (
     Backend,
     BackendError,
@@ -46,13 +50,7 @@ from vizlight.shading.results import DEFAULT_NAME, VALID
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
-
-    from numpy.typing import NDArray
     from typing_extensions import Unpack
-
-    from vizlight._types import Array, ColorLike, Foreign, Keywords
 
 __all__ = [
     "Backend",

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import re
 import textwrap
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
+from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 
+from vizlight._types import Keywords
 from vizlight.shading.display import NO_DATA_NAME
-
-if TYPE_CHECKING:
-    import pyvista as pv
-    from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
-
-    from vizlight._types import Keywords
 
 #: Keywords that say how large a bar is and where it stands: with any of them it is left as asked.
 PLACED = {

@@ -12,16 +12,12 @@ pytest's root folder.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import pytest
 
+from vizlight._types import ColorLike
 from vizlight.draw import testing
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight._types import ColorLike
 
 __all__ = ["same_picture"]
 

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
 from vizlight._questions import QUESTIONS
+from vizlight._types import Indices, Keywords
 from vizlight.draw.live import lifted, on_screen
 from vizlight.filters import lighting, relight
 from vizlight.filters.key import question_of
+from vizlight.filters.relight import Source
 from vizlight.filters.sky import SKY, with_sky
 from vizlight.filters.tint import RGB, light_on_colors, unlit_colors
 from vizlight.mesh import blocks, normals, records
@@ -21,21 +22,14 @@ from vizlight.mesh.blocks import cell_array
 from vizlight.mesh.normals import split_where_computed
 from vizlight.model import kernels
 from vizlight.scene import Light, Scene, View
-from vizlight.scene.presets import optional_scene
-from vizlight.shading.display import on_colors
-from vizlight.shading.options import LightOptions
+from vizlight.scene.presets import AnyScene, optional_scene
+from vizlight.shading.display import Bytes, on_colors
+from vizlight.shading.options import FeatureAngle, LightOptions
 from vizlight.vtk.arrays import GridPoints
 from vizlight.vtk.cells import GHOSTS
 from vizlight.vtk.corners import MANY_SHARP, SHARP
 from vizlight.vtk.normals import Sided, are_of_faces, computed_normals, creases, piece_numbers
 from vizlight.vtk.parts import uses_normals
-
-if TYPE_CHECKING:
-    from vizlight._types import Indices, Keywords
-    from vizlight.filters.relight import Source
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.display import Bytes
-    from vizlight.shading.options import FeatureAngle
 
 #: What is left out, for a page, a file and its reader.
 LEFT_OUT = "ambient and diffuse light only: the highlight and the depth cue depend on the eye"

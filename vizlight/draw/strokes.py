@@ -8,27 +8,21 @@ eye by its own width, so that a surface on which it lies does not hide it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import reference
-from vtkmodules.vtkRenderingCore import vtkMapper
+from vtkmodules.vtkRenderingCore import vtkActor, vtkMapper, vtkRenderer
 
 from vizlight import _check
+from vizlight._types import Array, Foreign, Indices, Keywords
 from vizlight.draw import glsl
 from vizlight.draw.dialects import VTK, Replacement, replace
 from vizlight.draw.glsl import ALONG, END, HALO, Stroke, suffixed
 from vizlight.model import formulas
 from vizlight.vtk import polylines
 from vizlight.vtk.polylines import has_lines_only
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
-
-    from vizlight._types import Array, Foreign, Indices, Keywords
 
 #: Width in pixels above 1, as VTK draws no quads for narrower lines; also the least width of lines
 #: of a diameter, so that none breaks up.

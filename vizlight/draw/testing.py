@@ -11,22 +11,19 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import NDArray
 from PIL import Image
 
 from vizlight import _check
+from vizlight._types import ColorLike, Foreign
 from vizlight.files import check_output, replace_file
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from vizlight._types import ColorLike, Foreign
-
-    Pixels: TypeAlias = NDArray[np.uint8]
-    Picture: TypeAlias = pv.BasePlotter | str | Path | Pixels
+Pixels: TypeAlias = NDArray[np.uint8]
+Picture: TypeAlias = pv.BasePlotter | str | Path | Pixels
 
 __all__ = ["Difference", "assert_same_picture", "difference"]
 

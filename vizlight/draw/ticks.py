@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from collections.abc import Sequence
 
 #: Most numbers whose steps are 1, 2, 2.5 or 5; those of more are 1, 2, 4 or 5.
 FEW = 5

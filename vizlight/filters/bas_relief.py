@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _progress
+from vizlight._types import Array, VectorLike
 from vizlight.geometry.relief.depth_map import depth_map
 from vizlight.mesh import closed_meshes, height_grids
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, VectorLike
 
 
 def bas_relief(

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _pool
+from vizlight._types import Array, Indices, Slice, Vector, VectorLike
 from vizlight.filters import lighting
 from vizlight.geometry.lines import fur as geometry
 from vizlight.mesh import blocks, bundles, georeference, records
@@ -18,17 +20,19 @@ from vizlight.mesh.sky import in_medium
 from vizlight.model import kernels
 from vizlight.scene import Material, Scene
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import as_scene
+from vizlight.scene.presets import AnyScene, as_scene
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import Bundle, Options, ShadingOptions, check_sides, checked_bundle
+from vizlight.shading.options import (
+    Bundle,
+    Exponent,
+    FeatureAngle,
+    Model,
+    Options,
+    ShadingOptions,
+    check_sides,
+    checked_bundle,
+)
 from vizlight.vtk.arrays import vectors_of
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Array, Indices, Slice, Vector, VectorLike
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.options import Exponent, FeatureAngle, Model
 
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.
 ABSORPTION, LENGTH = 0.5, 0.03

@@ -3,31 +3,32 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import ArrayLike
 
 from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, bundles, normals, refining
+from vizlight.mesh.blocks import MeshT
+from vizlight.scene import Scene
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import as_scene
-from vizlight.shading.options import Bundle, LightOptions
+from vizlight.scene.presets import AnyScene, as_scene
+from vizlight.shading.options import (
+    Bundle,
+    Exponent,
+    Facing,
+    FeatureAngle,
+    LightOptions,
+    Model,
+    Precision,
+)
 from vizlight.vtk.arrays import is_of_cells, points_of
+from vizlight.vtk.normals import Sided, Vote
 from vizlight.vtk.parts import Part, uses_normals
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
-
-    from vizlight.mesh.blocks import MeshT
-    from vizlight.scene import Scene
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.options import Exponent, Facing, FeatureAngle, Model, Precision
-    from vizlight.vtk.normals import Sided, Vote
 
 
 @named

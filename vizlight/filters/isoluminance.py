@@ -3,44 +3,36 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import ArrayLike
 
 from vizlight import _check, _progress
+from vizlight._types import Array, Bools, Indices, Keywords
 from vizlight.filters import lighting
 from vizlight.geometry.contours import banding, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
+from vizlight.geometry.contours.banding import Bands
+from vizlight.geometry.contours.spacing import Levels
 from vizlight.geometry.solids import exact_surfaces, tessellation, triangle_mesh
 from vizlight.geometry.solids.primitives import Frustum, Solid, Sphere
+from vizlight.geometry.solids.triangle_mesh import Mesh
 from vizlight.mesh import blocks, georeference, normals, records, subdivision
 from vizlight.model import kernels
+from vizlight.model.reflection import SpecularModel
+from vizlight.scene import Scene
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import as_scene
+from vizlight.scene.presets import AnyScene, as_scene
 from vizlight.shading import engine
 from vizlight.shading.display import exposed
-from vizlight.shading.options import LightOptions, Options, check_sides
-from vizlight.shading.results import of_light, part_name, unlit
+from vizlight.shading.engine import Shading
+from vizlight.shading.inputs import ShadingInputs
+from vizlight.shading.options import Exponent, FeatureAngle, LightOptions, Options, check_sides
+from vizlight.shading.results import Record, of_light, part_name, unlit
 from vizlight.vtk.arrays import array_of
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Bools, Indices, Keywords
-    from vizlight.geometry.contours.banding import Bands
-    from vizlight.geometry.contours.spacing import Levels
-    from vizlight.geometry.solids.triangle_mesh import Mesh
-    from vizlight.model.reflection import SpecularModel
-    from vizlight.scene import Scene
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.engine import Shading
-    from vizlight.shading.inputs import ShadingInputs
-    from vizlight.shading.options import Exponent, FeatureAngle
-    from vizlight.shading.results import Record
 
 
 @dataclass(frozen=True, kw_only=True)

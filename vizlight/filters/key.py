@@ -3,30 +3,25 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from vtkmodules.vtkCommonCore import vtkStringArray
 
 from vizlight import _check
 from vizlight._questions import QUESTIONS, Question
-from vizlight.filters.tint import RGB, color_table
+from vizlight._types import Array
+from vizlight.filters.tint import RGB, ColorMap, color_table
 from vizlight.scene import Scene, View
-from vizlight.scene.presets import preset_of, required_scene
+from vizlight.scene.presets import AnyScene, preset_of, required_scene
 from vizlight.shading import engine
-from vizlight.shading.display import LEAST, displayable, numerals, on_colors
+from vizlight.shading.display import LEAST, Bytes, displayable, numerals, on_colors
+from vizlight.shading.options import Exponent
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import pyvista as pv
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array
-    from vizlight.filters.tint import ColorMap
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.display import Bytes
-    from vizlight.shading.options import Exponent
 
 __all__ = ["color_below", "colors_of", "key", "key_picture", "question_of"]
 

@@ -4,30 +4,23 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check, _progress
 from vizlight.mesh import bundles, normals, records, subdivision
+from vizlight.mesh.bundles import Dimming
+from vizlight.scene import Scene
 from vizlight.shading import engine
-from vizlight.shading.results import PARTS, VALID, arrays_of, of_light, part_name, unlit
+from vizlight.shading.inputs import ArraySource, ShadingInputs
+from vizlight.shading.options import Bundle, LightOptions, Options, ShadingOptions
+from vizlight.shading.results import PARTS, VALID, Record, arrays_of, of_light, part_name, unlit
 from vizlight.vtk import parts as vtk_parts
-from vizlight.vtk.batches import batches
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    import pyvista as pv
-
-    from vizlight.mesh.bundles import Dimming
-    from vizlight.scene import Scene
-    from vizlight.shading.inputs import ArraySource, ShadingInputs
-    from vizlight.shading.options import Bundle, LightOptions, Options, ShadingOptions
-    from vizlight.shading.results import Record
-    from vizlight.vtk.batches import Batch
-    from vizlight.vtk.normals import Sided, Vote
-    from vizlight.vtk.parts import Part
+from vizlight.vtk.batches import Batch, batches
+from vizlight.vtk.normals import Sided, Vote
+from vizlight.vtk.parts import Part
 
 #: Options that may name an array.
 _ARRAYS = ("tangents", "normals", "positions", "conditioned", "occlusion")

@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import ArrayLike
 
 from vizlight import _check
-from vizlight.filters.project import ProjectOptions, project
+from vizlight._types import VectorLike
+from vizlight.filters.project import LightWhen, ProjectOptions, project
 from vizlight.geometry.nspace.manifolds import Manifold
 from vizlight.mesh.blocks import polydata
 from vizlight.mesh.nspace import FRAME, POSITION
 from vizlight.scene.keywords import named
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import VectorLike
-    from vizlight.filters.project import LightWhen
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.options import Exponent, Facing, Model, Precision
+from vizlight.scene.presets import AnyScene
+from vizlight.shading.options import Exponent, Facing, Model, Precision
 
 
 @named

@@ -3,31 +3,25 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import ArrayLike
 
 from vizlight import _check, _progress
+from vizlight._types import Array, Foreign
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 from vizlight.mesh import cf_grids, georeference, meaning, records
 from vizlight.mesh.particles import Carrier, Rows
 from vizlight.mesh.series import TIME, Series
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import as_scene
-from vizlight.shading.options import LightOptions
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Foreign
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.options import Bundle, Exponent, Facing, Model, Precision
+from vizlight.scene.presets import AnyScene, as_scene
+from vizlight.shading.options import Bundle, Exponent, Facing, LightOptions, Model, Precision
 
 #: Kinds of lines in a flow that changes with time.
 Kind = Literal["pathlines", "streaklines"]

@@ -3,31 +3,25 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, get_args
+from typing import ClassVar, Literal, get_args
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import ArrayLike
 
 from vizlight import _check, _progress
+from vizlight._types import VectorLike
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.nspace import projection
 from vizlight.mesh import blocks, records
 from vizlight.mesh.nspace import FRAME, POSITION, PROJECTED, Counter, Turning, continued
+from vizlight.scene import Scene
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import optional_scene
-from vizlight.shading.options import LightOptions
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import VectorLike
-    from vizlight.scene import Scene
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.options import Exponent, Facing, Model, Precision
-    from vizlight.shading.results import Record
+from vizlight.scene.presets import AnyScene, optional_scene
+from vizlight.shading.options import Exponent, Facing, LightOptions, Model, Precision
+from vizlight.shading.results import Record
 
 LightWhen = Literal["before", "after"]
 #: Options of the projection alone.

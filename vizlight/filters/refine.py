@@ -4,25 +4,28 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+
+from numpy.typing import ArrayLike
 
 from vizlight import _check
 from vizlight.filters import lighting
 from vizlight.filters.illuminate import light_parts, parts_of
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, records, refining
+from vizlight.mesh.blocks import MeshT
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import as_scene
-from vizlight.shading.options import LightOptions
+from vizlight.scene.presets import AnyScene, as_scene
+from vizlight.shading.options import (
+    Bundle,
+    Exponent,
+    Facing,
+    FeatureAngle,
+    LightOptions,
+    Model,
+    Precision,
+)
 from vizlight.shading.results import plain
 from vizlight.vtk.parts import share_of
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight.mesh.blocks import MeshT
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 #: Least error between points that light is refined to: rounding in float32 is about 1e-6.
 FINEST = 1e-5

@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Array, Keywords, Raw
 from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 from vizlight.geometry.relief import sun as sky
+from vizlight.geometry.relief.height_field import Border
 from vizlight.mesh import blocks, records
+from vizlight.mesh.blocks import MeshT
 from vizlight.scene import Light, Material, Scene
 from vizlight.scene.keywords import named
+from vizlight.shading.options import FeatureAngle
 from vizlight.shading.results import VALID, plain
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Keywords, Raw
-    from vizlight.geometry.relief.height_field import Border
-    from vizlight.mesh.blocks import MeshT
-    from vizlight.shading.options import FeatureAngle
 
 
 @named

@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _progress
+from vizlight._types import Array, Keywords, Raw
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.geometry.relief import sun as sky
+from vizlight.geometry.relief.height_field import Border
 from vizlight.mesh import blocks, records
-from vizlight.mesh.casters import CasterOptions, FieldCaster, caster
+from vizlight.mesh.blocks import MeshT
+from vizlight.mesh.casters import CasterOptions, FieldCaster, SolidCaster, caster
 from vizlight.mesh.height_grids import Grid, elevation_name
 from vizlight.mesh.normals import split_where_computed
 from vizlight.mesh.sky import ABOVE
 from vizlight.scene import Light, Scene
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import as_scene
+from vizlight.scene.presets import AnyScene, as_scene
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import ShadingOptions
+from vizlight.shading.options import FeatureAngle, ShadingOptions
 from vizlight.shading.results import (
     DEFAULT_NAME,
     PARTS,
@@ -34,16 +38,6 @@ from vizlight.shading.results import (
 )
 from vizlight.vtk.cells import check_whole, triangles
 from vizlight.vtk.parts import share_of
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Array, Keywords, Raw
-    from vizlight.geometry.relief.height_field import Border
-    from vizlight.mesh.blocks import MeshT
-    from vizlight.mesh.casters import SolidCaster
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.options import FeatureAngle
 
 #: Share of a surface in which shadows end from which a warning is given, and sides of triangles
 #: that are long: as a share of the mesh's longest side, or in cells of the raster.
@@ -387,12 +381,12 @@ def _warn_of_wide(mesh: pv.DataSet, t: Array, raster: float | None) -> None:
         )
 
 
-def sun_direction(sun: object, name: str = "sun") -> Array:
+def sun_direction(sun: object) -> Array:
     """Return the direction toward the sun from its azimuth and altitude in degrees."""
-    angles = _check.floats(name, sun)
+    angles = _check.floats("sun", sun)
     if angles.shape != (2,):
         expected = "two angles in degrees, (azimuth, altitude)"
-        raise ValueError(_check.message(name, expected, _check.describe(sun)))
+        raise ValueError(_check.message("sun", expected, _check.describe(sun)))
     return sky.toward(angles[0], angles[1])
 
 

@@ -4,32 +4,27 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Given, Keywords
 from vizlight.filters import lighting
+from vizlight.filters.relief_shadow import ReliefOptions, Shadows
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, bundles, normals, records
 from vizlight.mesh.casters import EvenField, FieldCaster
 from vizlight.mesh.height_grids import Grid
 from vizlight.mesh.nspace import PROJECTED
-from vizlight.scene import Scene
-from vizlight.shading.options import Bundle, LightOptions, ShadingOptions
+from vizlight.scene import Scene, View
+from vizlight.shading.engine import Shading
+from vizlight.shading.inputs import ShadingInputs
+from vizlight.shading.options import Bundle, Facing, LightOptions, ShadingOptions
 from vizlight.shading.results import DEFAULT_NAME, part_name
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from vizlight._types import Given, Keywords
-    from vizlight.filters.relief_shadow import ReliefOptions, Shadows
-    from vizlight.scene import View
-    from vizlight.shading.engine import Shading
-    from vizlight.shading.inputs import ShadingInputs
-    from vizlight.shading.options import Facing
-    from vizlight.vtk.normals import Sided
+from vizlight.vtk.normals import Sided
 
 #: Share of the points whose light may differ from the record, such as those on the rim of a cut.
 CHANGED = 0.05

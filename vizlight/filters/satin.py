@@ -4,22 +4,26 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import pyvista as pv
+from numpy.typing import ArrayLike
 
 from vizlight import _check
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import StreamlineOptions, light_lines
 from vizlight.scene.keywords import named
-from vizlight.shading.options import LightOptions
+from vizlight.scene.presets import AnyScene
+from vizlight.shading.options import (
+    Bundle,
+    Exponent,
+    Facing,
+    FeatureAngle,
+    LightOptions,
+    Model,
+    Precision,
+)
 from vizlight.vtk.arrays import is_of_cells, tangents_of, vectors_of
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 
 @dataclass(frozen=True, kw_only=True)

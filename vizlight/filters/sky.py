@@ -3,35 +3,28 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPointSet, vtkPolyData
 
 from vizlight import _check, _progress
+from vizlight._types import Given, Raw
 from vizlight._version import __version__
 from vizlight.geometry.relief.sky import LARGEST, LEAST
 from vizlight.mesh import blocks, normals, records, subdivision
-from vizlight.mesh.sky import MANY, VOXELS, skies
+from vizlight.mesh.blocks import MeshT
+from vizlight.mesh.sky import MANY, VOXELS, Sky, skies
 from vizlight.model import kernels
 from vizlight.scene.keywords import named
-from vizlight.shading.options import Options, check_sides
-from vizlight.shading.results import VALID, digest, plain
+from vizlight.shading.options import FeatureAngle, Options, check_sides
+from vizlight.shading.results import VALID, Record, digest, plain
 from vizlight.vtk.cells import places, point_data
 from vizlight.vtk.corners import SHARP
 from vizlight.vtk.normals import computed_normals
 from vizlight.vtk.polylines import has_lines_only
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Given, Raw
-    from vizlight.mesh.blocks import MeshT
-    from vizlight.mesh.sky import Sky
-    from vizlight.shading.options import FeatureAngle
-    from vizlight.shading.results import Record
 
 #: Name of the array, which stands for a sky that is computed where a mesh has none.
 SKY = "sky"

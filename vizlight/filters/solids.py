@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pyvista as pv
 
 from vizlight.geometry.solids import tessellation
-
-if TYPE_CHECKING:
-    from vizlight.geometry.solids.primitives import Solid
+from vizlight.geometry.solids.primitives import Solid
 
 
 def to_polydata(solid: Solid, /, *, tolerance: float = 3e-3) -> pv.PolyData:

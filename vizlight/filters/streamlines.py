@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import ArrayLike
 
 from vizlight import _check, _progress
 from vizlight._questions import QUESTIONS
+from vizlight._types import Array, Indices
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.lines.tracing import Tracing
 from vizlight.mesh import blocks, georeference, meaning, records, strokes, tracers
@@ -19,22 +22,21 @@ from vizlight.mesh.normals import NORMALS, closest_normals, onlooker, with_norma
 from vizlight.mesh.records import all_made
 from vizlight.mesh.tracers import TRACED, Vectors
 from vizlight.model import kernels, line_fields
+from vizlight.scene import Scene
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import as_scene, preset_of
-from vizlight.shading.options import LightOptions
+from vizlight.scene.presets import AnyScene, as_scene, preset_of
+from vizlight.shading.options import (
+    Bundle,
+    Exponent,
+    Facing,
+    FeatureAngle,
+    LightOptions,
+    Model,
+    Precision,
+)
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import array_of, vectors_of
 from vizlight.vtk.cells import check_whole, has_faces
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Indices
-    from vizlight.scene import Scene
-    from vizlight.scene.presets import AnyScene
-    from vizlight.shading.options import Bundle, Exponent, Facing, FeatureAngle, Model, Precision
 
 #: Names of the point arrays of the directions that were integrated, and by which the lines are
 #: lit, of the lengths along lines, and of the lengths of vectors.

@@ -4,33 +4,28 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import ArrayLike, NDArray
 
 from vizlight import _check
+from vizlight._types import Array, Bools, ColorLike, Foreign, Keywords, Raw, Slice
 from vizlight._version import __version__
 from vizlight.filters import lighting, relight
 from vizlight.mesh import blocks, normals, records
+from vizlight.mesh.blocks import MeshT
 from vizlight.model import kernels
 from vizlight.scene import Scene
 from vizlight.shading import display
-from vizlight.shading.results import DEFAULT_NAME, VALID, part_name
+from vizlight.shading.display import Bytes
+from vizlight.shading.results import DEFAULT_NAME, VALID, Record, part_name
 from vizlight.vtk.arrays import are_colors, at_points, is_of_cells
 from vizlight.vtk.cells import has_faces, has_polyhedra
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from vizlight._types import Array, Bools, ColorLike, Foreign, Keywords, Raw, Slice
-    from vizlight.mesh.blocks import MeshT
-    from vizlight.shading.display import Bytes
-    from vizlight.shading.results import Record
-
-    ColorMap = Foreign
+ColorMap = Foreign
 
 RGB = "rgb"
 #: Largest number of colours of a table.

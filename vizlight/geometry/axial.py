@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vizlight import _check
+from vizlight._types import Array, VectorLike
 from vizlight.model import falloff
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight._types import Array, VectorLike
-
 
 #: Segments of a circle: the fewest that look round, and the most that are tried.
 FEWEST, MOST = 36, 1 << 13

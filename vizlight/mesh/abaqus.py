@@ -7,20 +7,16 @@ with one asterisk, a comment with two; lines of data follow a keyword.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 import scipy
 
 from vizlight import _check
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from vizlight._types import Array, Indices
+from vizlight._types import Array, Indices
 
 #: Names of elements, in which the number of their nodes stands, by the dimension of their cells.
 _FAMILIES = {

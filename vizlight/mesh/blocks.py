@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar, cast
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeVar, cast
 
 import numpy as np
 import pyvista as pv
@@ -13,14 +14,10 @@ from vtkmodules.vtkCommonDataModel import (
 )
 
 from vizlight import _check
+from vizlight._types import Array, Foreign, Indices, Vector
 from vizlight.mesh import joining
 from vizlight.vtk import hull
 from vizlight.vtk.cells import cell_data, check_whole, field_data, has_faces, point_data
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from vizlight._types import Array, Foreign, Indices, Vector
 
 #: Type of a mesh that a filter takes and returns.
 MeshT = TypeVar("MeshT", bound="pv.DataSet | pv.MultiBlock")

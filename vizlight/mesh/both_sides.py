@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
 
 __all__ = ["both_sides"]
 

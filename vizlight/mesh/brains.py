@@ -6,19 +6,15 @@ import gzip
 import io
 import re
 import warnings
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 
+from vizlight._types import AnyArray, Foreign
 from vizlight.mesh import meaning, series
 from vizlight.mesh.georeference import UNIT
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from vizlight._types import AnyArray, Foreign
 
 __all__ = [
     "MEASURES", "SURFACES", "VOLUMES", "hemisphere", "is_freesurfer", "is_pair", "overlay", "read",

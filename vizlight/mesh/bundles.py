@@ -4,25 +4,22 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array, Indices
 from vizlight.geometry.lines import bundle as geometry
+from vizlight.geometry.lines.bundle import Medium
 from vizlight.mesh import blocks, records
+from vizlight.scene import Light, Scene
+from vizlight.shading.inputs import ShadingInputs
+from vizlight.shading.options import Bundle
+from vizlight.shading.results import Record
 from vizlight.vtk import polylines
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from vizlight._types import Array, Indices
-    from vizlight.geometry.lines.bundle import Medium
-    from vizlight.scene import Light, Scene
-    from vizlight.shading.inputs import ShadingInputs
-    from vizlight.shading.options import Bundle
-    from vizlight.shading.results import Record
 
 #: Share of the diagonal that the default diameter is at most.
 THICKEST = 1 / 500

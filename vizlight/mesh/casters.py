@@ -4,28 +4,23 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array, Bools, VectorLike
 from vizlight.geometry.relief import height_field, shadowing
+from vizlight.geometry.relief.height_field import Border
 from vizlight.mesh import closed_meshes, georeference, normals
 from vizlight.mesh.height_grids import Grid, Raster, heights_of
 from vizlight.model import kernels
-from vizlight.shading.options import Options, check_sides
+from vizlight.scene import Light, Scene
+from vizlight.shading.options import FeatureAngle, Options, check_sides
 from vizlight.verify import rays
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from vizlight._types import Array, Bools, VectorLike
-    from vizlight.geometry.relief.height_field import Border
-    from vizlight.scene import Light, Scene
-    from vizlight.shading.options import FeatureAngle
 
 #: Default depth of a closed surface, as a share of the diagonal of the mesh.
 DEPTH = 0.01

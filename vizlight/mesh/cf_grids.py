@@ -7,13 +7,16 @@ import itertools
 import math
 import re
 import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
-from typing import TYPE_CHECKING, TypeAlias, TypeVar
+from pathlib import Path
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 import pyvista as pv
 
+from vizlight._types import Array, Bools, Foreign, Indices, Keywords, Raw
 from vizlight.geometry.relief import height_field
 from vizlight.mesh import (
     dates,
@@ -31,12 +34,6 @@ from vizlight.mesh import (
     unstructured,
 )
 from vizlight.mesh.meaning import Meaning
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-    from pathlib import Path
-
-    from vizlight._types import Array, Bools, Foreign, Indices, Keywords, Raw
 
 __all__ = ["GRIB", "NETCDF", "SUFFIXES", "ZARR", "Steps", "add", "is_grid", "of_dataset", "read"]
 

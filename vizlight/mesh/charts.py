@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 from matplotlib.path import Path
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Raw
 from vizlight.mesh import blocks, georeference, globes, meaning, projections
 from vizlight.mesh.georeference import PROJECTION
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Array, Bools, Raw
-    from vizlight.mesh.projections import Projection
+from vizlight.mesh.projections import Projection
 
 __all__ = ["chart"]
 

@@ -7,6 +7,7 @@ just behind the previous ones. Distances are computed from the triangles in floa
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,17 +16,14 @@ from vtkmodules.vtkCommonCore import mutable
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Foreign, Indices
 from vizlight.geometry.solids import parallel_rays
 from vizlight.mesh import blocks
 from vizlight.vtk.cells import faces_only, triangles
 from vizlight.vtk.topology import coincident
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from embreex.rtcore_scene import EmbreeScene
-
-    from vizlight._types import Array, Bools, Foreign, Indices
 
 #: Number of rays whose hits are in memory at once.
 BLOCK = 1 << 17

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check, data
+from vizlight._types import Array, Bools, Indices
 from vizlight.mesh import charts, georeference, globes, polylines
 from vizlight.vtk.cells import connectivity
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Array, Bools, Indices
 
 __all__ = ["coasts"]
 

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.colors import to_rgb
 
+from vizlight._types import Array, Bools, Raw
 from vizlight.maps import MISSING
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from vizlight._types import Array, Bools, Raw
 
 #: Interpretations of bands by their files, and patterns of names: words, letters, and the numbers
 #: of Sentinel-2 and Landsat 8.

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Indices
 from vizlight.vtk.cells import check_whole, connectivity
 from vizlight.vtk.corners import SHARP
 from vizlight.vtk.memory import once
 from vizlight.vtk.normals import creases as share_of_creases
-
-if TYPE_CHECKING:
-    from vizlight._types import Indices
 
 __all__ = ["creases"]
 

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
+import pyvista as pv
 
+from vizlight._types import Array
 from vizlight.mesh import meaning, molecules
 from vizlight.mesh.brains import of_affine
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    import pyvista as pv
-
-    from vizlight._types import Array
 
 #: A bohr in angstroms, by CODATA 2018.
 BOHR = 0.529177210903

@@ -5,13 +5,10 @@ from __future__ import annotations
 import bisect
 import math
 import re
+from collections.abc import Iterator, Sequence
 from datetime import timedelta
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
 
 __all__ = ["date", "round_dates", "seconds"]
 

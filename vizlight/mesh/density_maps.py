@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 
+from vizlight._types import Foreign
 from vizlight.mesh import file_parts, meaning
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from vizlight._types import Foreign
 
 SUFFIXES = (".mrc", ".ccp4", ".map")
 #: Name of the densities in words.

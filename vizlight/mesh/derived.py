@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Foreign, Keywords, Raw
 from vizlight.mesh import blocks, georeference, meaning, records, sections
 from vizlight.mesh.polylines import by_end
 from vizlight.mesh.subdivision import by_corner
 from vizlight.vtk.arrays import of_components
 from vizlight.vtk.cells import check_whole, connectivity
 from vizlight.vtk.polylines import has_lines_only
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Array, Bools, Foreign, Keywords, Raw
 
 __all__ = ["layer_of", "layers", "stretched", "surface_of", "warped", "with_vectors"]
 

@@ -9,19 +9,15 @@ from __future__ import annotations
 import mmap
 import os
 import re
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, NamedTuple
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from vizlight._types import Indices, Raw
 from vizlight.mesh import file_parts
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from vizlight._types import Indices, Raw
 
 __all__ = ["missing_part", "size"]
 

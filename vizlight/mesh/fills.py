@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Raw
 from vizlight.mesh import meaning
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Raw
-    from vizlight.mesh.blocks import DataSetT
+from vizlight.mesh.blocks import DataSetT
 
 #: Values that stand for none in files that do not say so, beside those whose digits are all 9.
 _LIMITS = {-(2.0**15), 1 - 2.0**15, 2.0**15 - 1, 2.0**16 - 1, -(2.0**31), 2.0**31 - 1}

@@ -9,13 +9,15 @@ import re
 import threading
 import warnings
 import zipfile
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
 from vizlight import _check, _supervise
+from vizlight._types import Array, Foreign, Indices, Raw
 from vizlight.mesh import (
     abaqus,
     brains,
@@ -39,12 +41,6 @@ from vizlight.mesh import (
     xml_scenes,
 )
 from vizlight.vtk.topology import place_numbers
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from pathlib import Path
-
-    from vizlight._types import Array, Foreign, Indices, Raw
 
 #: Number of bytes at the start of an .inp file that show whether it is one of Abaqus.
 _INP_HEAD = 64

@@ -7,20 +7,15 @@ from __future__ import annotations
 
 import itertools
 import re
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import NDArray
 
+from vizlight._types import Array, Bools, Indices
 from vizlight.mesh import blocks, file_parts
 from vizlight.mesh.nspace import POSITION
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Bools, Indices
 
 #: Words at the start of a file, and the meaning of each letter before OFF and MESH for a vertex.
 _OFF = re.compile(rb"\s*(?:#.*\n\s*)*(ST)?(C)?(N)?(4)?(n)?OFF\b")

@@ -5,19 +5,16 @@ from __future__ import annotations
 import math
 import re
 import warnings
-from typing import TYPE_CHECKING, TypeAlias
+from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array, Foreign, Raw, Slice
 from vizlight.mesh import blocks, composites, fills, meaning, sections
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from vizlight._types import Array, Foreign, Raw, Slice
-    from vizlight.mesh.blocks import DataSetT
+from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
     "DEGREE", "PROJECTION", "SUFFIXES", "UNIT", "exaggeration", "has_degrees", "in_degrees",

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 import scipy
 
 from vizlight import _check
+from vizlight._types import Array, Indices
 from vizlight.mesh import georeference, meaning, polylines, projections, records
 from vizlight.vtk.cells import connectivity, dimensions
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, Indices
 
 __all__ = ["globe"]
 

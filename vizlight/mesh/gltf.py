@@ -7,13 +7,11 @@ import json
 import math
 import struct
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import BinaryIO
 from urllib.parse import unquote
 
+from vizlight._types import Foreign, Keywords
 from vizlight.mesh import file_parts
-
-if TYPE_CHECKING:
-    from vizlight._types import Foreign, Keywords
 
 __all__ = ["missing_part"]
 

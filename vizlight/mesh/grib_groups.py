@@ -9,13 +9,10 @@ import importlib
 import math
 import shutil
 import tempfile
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from pathlib import Path
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from vizlight._types import Foreign, Keywords
+from vizlight._types import Foreign, Keywords
 
 __all__ = ["missing_messages", "opened"]
 

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import pyvista as pv
 import scipy
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Indices
 from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.depth_map import depth_map
 from vizlight.mesh import blocks, georeference, records, subdivision
 from vizlight.vtk.arrays import GridPoints, points_of
 from vizlight.vtk.cells import has_faces
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, Bools, Indices
 
 Grid: TypeAlias = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 #: Largest extent in z of a level grid, as a share of its size: the rounding of float32 directions.

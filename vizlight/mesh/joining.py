@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, cast
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple, cast
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkGenericCell
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
 
+from vizlight._types import AnyArray, Bools, Foreign, RawType
 from vizlight.shading.results import record_key
 from vizlight.vtk.arrays import at_points, named, points_of
 from vizlight.vtk.cells import GHOSTS, as_numpy, as_vtk, cell_data, field_data, point_data
 from vizlight.vtk.hull import cell_types, dimension
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from vizlight._types import AnyArray, Bools, Foreign, RawType
 
 #: Value of a colour of bytes where a dataset has none, mid grey.
 GREY = 128

@@ -6,21 +6,18 @@ VTK's reader makes numbers up that are missing, and ends the process at numbers 
 from __future__ import annotations
 
 import itertools
+import mmap
 import re
-from typing import TYPE_CHECKING, BinaryIO
+from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import VTK_POLYHEDRON
 
+from vizlight._types import Indices
 from vizlight.mesh import file_parts, series
 from vizlight.vtk.cells import cell_arrays, connectivity, points_of_type
-
-if TYPE_CHECKING:
-    import mmap
-    from pathlib import Path
-
-    from vizlight._types import Indices
 
 __all__ = ["missing_numbers", "missing_part"]
 

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 import scipy
 
+from vizlight._types import Array, Bools, Foreign, Indices, Raw
 from vizlight.mesh import globes, unrolled
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping
-
-    from vizlight._types import Array, Bools, Foreign, Indices, Raw
 
 __all__ = [
     "Around", "Listed", "around_earth", "cells", "joined", "listed", "points", "seem_radians",

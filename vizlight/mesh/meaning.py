@@ -6,23 +6,19 @@ import itertools
 import json
 import re
 from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from pathlib import Path
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Foreign, Raw
 from vizlight.mesh import dates, records
+from vizlight.mesh.blocks import DataSetT
 from vizlight.vtk.arrays import stacked
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
-
-    import pyvista as pv
-
-    from vizlight._types import Foreign, Raw
-    from vizlight.mesh.blocks import DataSetT
 
 __all__ = [
     "ANATOMY", "MEANING", "AxisScale", "Meaning", "along_grid", "attach", "components",

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
+import pyvista as pv
 
+from vizlight._types import Array, Indices
 from vizlight.mesh import file_parts, meaning, molecules
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    import pyvista as pv
-
-    from vizlight._types import Array, Indices
 
 #: Angstroms of a nanometre, and first column of the places of GROMACS.
 _NANOMETRE, _FIRST = 10.0, 20

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
@@ -11,14 +12,9 @@ import scipy
 from vtkmodules.vtkCommonDataModel import vtkMolecule
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Foreign, Indices
 from vizlight.mesh import file_parts, meaning, ribbons
 from vizlight.model import formulas
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from vizlight._types import Array, Bools, Foreign, Indices
 
 #: Atomic numbers of elements that are no metals.
 NO_METALS = [1, 2, *range(5, 11), *range(14, 19), *range(32, 37), *range(52, 55), 85, 86]

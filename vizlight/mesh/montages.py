@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array
 from vizlight.mesh import meaning
 from vizlight.vtk.cells import dimensions
-
-if TYPE_CHECKING:
-    from vizlight._types import Array
 
 __all__ = ["is_stack", "side_by_side"]
 

@@ -6,16 +6,20 @@ Faces with points of their own are welded first; then sharp edges are those of t
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Literal, TypeVar
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array, Foreign, Indices, Raw
 from vizlight.geometry.lines.simplices import Simplices
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
-from vizlight.scene import View
+from vizlight.scene import Scene, View
+from vizlight.shading.inputs import ArraySource
+from vizlight.shading.options import FeatureAngle, LightOptions
 from vizlight.vtk.batches import SMALL, batches
 from vizlight.vtk.cells import (
     cell_arrays,
@@ -39,22 +43,11 @@ from vizlight.vtk.normals import (
     remember,
     sided_normals,
 )
+from vizlight.vtk.parts import Part
 from vizlight.vtk.topology import coincident
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-    from typing import TypeVar
-
-    from vizlight._types import Array, Indices, Raw
-    from vizlight.scene import Scene
-    from vizlight.shading.inputs import ArraySource
-    from vizlight.shading.options import FeatureAngle, LightOptions
-    from vizlight.vtk.parts import Part
-
-    MeshT = TypeVar("MeshT", bound=pv.DataSet)
-    SurfaceT = TypeVar("SurfaceT")
-
-    from vizlight._types import Foreign
+MeshT = TypeVar("MeshT", bound=pv.DataSet)
+SurfaceT = TypeVar("SurfaceT")
 
 #: Name of the point array in which normals that had to be computed stay with a result: three
 #: components of the normal, its lean, and its number of ``Sided.open``.
@@ -444,9 +437,7 @@ def kept(mesh: pv.DataSet) -> Sided | None:
 NORMALS = "vizlight normals"
 
 
-def with_normals(
-    surface: object, view: View | None, angle: FeatureAngle = None, name: str = "surface"
-) -> pv.PolyData:
+def with_normals(surface: object, view: View | None, angle: FeatureAngle = None) -> pv.PolyData:
     """Return the triangles of a surface as a new mesh with the unit point normals ``NORMALS``.
 
     Points are split at edges sharper than the angle; without one a warning is given if normals
@@ -459,7 +450,7 @@ def with_normals(
     ValueError
         If it has no faces.
     """
-    own = split_where_computed(blocks.surface(surface, name), angle)
+    own = split_where_computed(blocks.surface(surface, "surface"), angle)
     # Vertices and lines are left out, because every cell must be a triangle.
     triangles = pv.PolyData(faces_only(own))
     for key, array in own.point_data.items():

@@ -2,28 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 import scipy
 
 from vizlight import _check, _pool
+from vizlight._types import AnyArray, Array, Bools, Indices, Sparse, VectorLike
 from vizlight._version import __version__
 from vizlight.geometry.nspace import projection, slices
 from vizlight.mesh import blocks, records
 from vizlight.model.frames import default_rtol
-from vizlight.shading.results import plain
+from vizlight.shading.results import Record, plain
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import array_of
 from vizlight.vtk.cells import has_faces
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from vizlight._types import AnyArray, Array, Bools, Indices, Sparse, VectorLike
-    from vizlight.shading.results import Record
 
 POSITION, FRAME, PROJECTED, RECORD = "position", "frame", "projected_", "projection"
 #: Least gap of the eigenvalues of a mean of projections onto tangent spaces, from 0 to 1, at which

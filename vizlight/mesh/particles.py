@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkProbeFilter
 
+from vizlight._types import Array, Foreign, Indices
 from vizlight.geometry.lines.simplices import Columns
 from vizlight.mesh import dates, georeference, meaning, polylines, records, strokes
 from vizlight.vtk.cells import connectivity
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, Foreign, Indices
 
 #: Name of the array that is probed: the vectors at both ends of an interval.
 BOTH = "vizlight vectors"

@@ -8,18 +8,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array, Foreign, Indices, Raw
 from vizlight.mesh import blocks, file_parts
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from vizlight._types import Array, Foreign, Indices, Raw
 
 #: Types of NumPy by those of PLY.
 _TYPES = {

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array, Indices
 from vizlight.mesh import blocks, records
 from vizlight.vtk.cells import connectivity
 from vizlight.vtk.polylines import has_lines_only, line_tangents
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from vizlight._types import Array, Indices
 
 
 def backdrop(meshes: Iterable[pv.DataSet]) -> str:

@@ -7,15 +7,12 @@ radius; all others are left to PROJ, which comes with rasterio.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from vizlight._types import Array, Foreign
+from vizlight._types import Array, Foreign
 
 __all__ = ["Projection", "around", "of_attributes", "of_text", "suited"]
 

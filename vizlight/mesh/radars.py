@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 import pyvista as pv
 
+from vizlight._types import Array, Foreign
 from vizlight.mesh import fills, georeference, meaning, projections, series
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from vizlight._types import Array, Foreign
 
 #: Variables by which a file is one of CfRadial: of its rays, and of its sweeps.
 _ANGLES, _OTHERS = ("azimuth", "elevation"), ("range", "sweep_start_ray_index")

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, cast
+from collections.abc import Iterable, Mapping
+from typing import cast
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkStringArray
 
 from vizlight import _check
+from vizlight._types import AnyArray, Foreign, Indices, Keywords, Raw, Slice
 from vizlight._version import __version__
 from vizlight.mesh import blocks
-from vizlight.shading.results import digest, plain, record_key
+from vizlight.mesh.blocks import DataSetT
+from vizlight.shading.results import Record, digest, plain, record_key
 from vizlight.vtk import hull
 from vizlight.vtk.arrays import is_of_cells, means
 from vizlight.vtk.cells import (
@@ -24,13 +27,6 @@ from vizlight.vtk.cells import (
     places,
     point_data,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from vizlight._types import AnyArray, Foreign, Indices, Keywords, Raw, Slice
-    from vizlight.mesh.blocks import DataSetT
-    from vizlight.shading.results import Record
 
 #: In place of a digest of arrays of a piece, which stay vizlight's own where pieces are joined.
 ANY = "any"

@@ -4,28 +4,24 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Indices
 from vizlight.mesh import records, subdivision
 from vizlight.mesh.subdivision import SplitCells
+from vizlight.scene import Scene
 from vizlight.shading import engine
+from vizlight.shading.engine import Shading
+from vizlight.shading.inputs import ArraySource
+from vizlight.shading.options import LightOptions
 from vizlight.verify.between import Between, Places, columns, error_between, random_places
 from vizlight.vtk.cells import field_data, has_faces
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    import pyvista as pv
-
-    from vizlight._types import Array, Bools, Indices
-    from vizlight.scene import Scene
-    from vizlight.shading.engine import Shading
-    from vizlight.shading.inputs import ArraySource
-    from vizlight.shading.options import LightOptions
-    from vizlight.vtk.parts import Part
+from vizlight.vtk.parts import Part
 
 #: Number of points that a refined mesh may have by default, if it has not half of them already.
 MANY = 1_000_000

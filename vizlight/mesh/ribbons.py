@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pyvista as pv
 import scipy
 
-if TYPE_CHECKING:
-    from vizlight._types import Array, Bools, Indices
+from vizlight._types import Array, Bools, Indices
 
 #: Kinds of secondary structure: none of the others, a helix, a strand of a sheet.
 LOOP, HELIX, STRAND = 0, 1, 2

@@ -5,18 +5,15 @@ from __future__ import annotations
 import itertools
 import re
 import threading
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _supervise
-
-if TYPE_CHECKING:
-    from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-    from pathlib import Path
-
-    from vizlight._types import Array, Foreign, Raw
+from vizlight._types import Array, Foreign, Raw
 
 SUFFIXES = (".wrl", ".vrml")
 #: VTK's parser of VRML keeps its state in variables of the process.

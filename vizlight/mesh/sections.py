@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pyvista as pv
 
 from vizlight.mesh import blocks, meaning
-
-if TYPE_CHECKING:
-    from vizlight.mesh.blocks import DataSetT
+from vizlight.mesh.blocks import DataSetT
 
 __all__ = ["stretch", "stretched"]
 

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+from numpy.typing import NDArray
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from vizlight import _check
+from vizlight._types import Foreign
 from vizlight.mesh import blocks, dates, meaning
 from vizlight.vtk.arrays import vectors_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from vizlight._types import Foreign
 
 __all__ = [
     "STEPS",

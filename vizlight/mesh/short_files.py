@@ -12,15 +12,12 @@ import re
 import struct
 import zipfile
 import zlib
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import BinaryIO
 
 from vizlight import _check
 from vizlight.mesh import ensight, file_parts, gltf, legacy_vtk, references, vtk_xml
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
 
 __all__ = ["missing_part", "triangles"]
 

@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
 import scipy
 
 from vizlight import _check, _compiled
+from vizlight._types import Array, Bools, Indices
 from vizlight.geometry.lines import bundle as media
 from vizlight.geometry.relief import sky as fields
 from vizlight.mesh import blocks, bundles, normals, sky_rays
-from vizlight.mesh.height_grids import Grid, elevation_name, heights_of
+from vizlight.mesh.height_grids import Grid, Heights, elevation_name, heights_of
+from vizlight.mesh.sky_rays import SkyPlaces
 from vizlight.scene import View
 from vizlight.shading.options import Bundle
+from vizlight.shading.results import Record
 from vizlight.verify import between
 from vizlight.vtk import polylines
 from vizlight.vtk.cells import GHOSTS, faces_only, has_faces, triangles
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from vizlight._types import Array, Bools, Indices
-    from vizlight.mesh.height_grids import Heights
-    from vizlight.mesh.sky_rays import SkyPlaces
-    from vizlight.shading.results import Record
 
 #: Error from which lines are taken for a medium of voxels, number of points at which rays measure
 #: it, and number of pieces beyond which it is not measured, as rays need tubes around all lines.

@@ -9,19 +9,16 @@ are not right enough yet.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from vizlight import _check, _pool
+from vizlight._types import Array, Bools, Indices, Slice
 from vizlight.geometry.lines.bundle import segment_starts
 from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.mesh.closed_meshes import Tracer
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from vizlight._types import Array, Bools, Indices, Slice
 
 #: Distance of starts from the surface as a share of the size of the scene: what float32 resolves.
 OFFSET = 2e-6

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array
 from vizlight.mesh import blocks
-
-if TYPE_CHECKING:
-    from vizlight._types import Array
 
 __all__ = ["smoothed"]
 

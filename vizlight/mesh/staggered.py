@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from vizlight._types import Array, Foreign
+from vizlight._types import Array, Foreign
 
 __all__ = ["alike", "to_middles"]
 

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
 import scipy
 
+from vizlight._types import AnyArray, Array, Bools, Indices
 from vizlight.model import kernels
 from vizlight.vtk import polylines
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight._types import AnyArray, Array, Bools, Indices
 
 #: Width of both ends of a stroke without a sense as a share of its largest width.
 ENDS = 0.3

@@ -7,18 +7,14 @@ number of its kind and its size. Points are in the space of the whole scene.
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from vizlight._types import Foreign
+from vizlight._types import Foreign
 
 #: Kinds of chunks that hold others: a file, its scene, a mesh; and an object, after its name.
 _HOLDERS, _OBJECT = (0x4D4D, 0x3D3D, 0x4100), 0x4000

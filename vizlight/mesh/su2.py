@@ -7,18 +7,14 @@ its number.
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 
+from vizlight._types import Array, Indices
 from vizlight.mesh import file_parts
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from vizlight._types import Array, Indices
 
 #: Number of corners of each kind of cell, by VTK's number of it, which SU2 has too.
 _CORNERS = {3: 2, 5: 3, 9: 4, 10: 4, 12: 8, 13: 6, 14: 5}

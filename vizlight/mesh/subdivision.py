@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 import pyvista as pv
 import scipy
+from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Indices, Raw, Sparse
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.verify.between import Places, are_unit
@@ -16,13 +18,6 @@ from vizlight.vtk import hull, polylines
 from vizlight.vtk.cells import connectivity, has_faces
 from vizlight.vtk.cells import triangles as triangles_of
 from vizlight.vtk.hull import as_lagrange
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
-
-    from vizlight._types import Array, Bools, Indices, Raw, Sparse
 
 #: Number of bits of the smaller number of a pair.
 HALF = 31

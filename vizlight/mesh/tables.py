@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import csv
 import re
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array
 from vizlight.mesh import georeference, meaning
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from vizlight._types import Array
 
 #: Ends of names of tables, and what may stand between their columns.
 SUFFIXES, SEPARATORS = (".csv", ".tsv"), ",;\t"

@@ -5,15 +5,12 @@ Source: H. Si, "TetGen", and J. R. Shewchuk, "Triangle", file formats ``.node`` 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from vizlight._types import Array
+from vizlight._types import Array
 
 #: Ends of names of the two files.
 SUFFIXES = (".node", ".ele")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 import pyvista as pv
@@ -10,16 +10,12 @@ from vtkmodules.vtkCommonCore import vtkCommand
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from vizlight import _check
+from vizlight._types import Array, Foreign
 from vizlight.geometry.lines import even, fur, tracing
 from vizlight.geometry.lines.simplices import CellPlaces, Simplices
 from vizlight.geometry.lines.tracing import AT_REST, Curves, Flow, Tracing, trace
 from vizlight.mesh import polylines
 from vizlight.model import kernels, line_fields
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight._types import Array, Foreign
 
 #: Name of the array that is traced, or of the two of a cross field.
 Vectors = str | tuple[str, str]

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
+from vizlight._types import AnyArray, Array, Bools, Indices, Raw
 from vizlight.mesh import blocks, globes, meaning
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import AnyArray, Array, Bools, Indices, Raw
 
 __all__ = ["Faces", "of_grid", "plain", "turn_vectors", "unrolled"]
 

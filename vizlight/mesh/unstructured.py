@@ -7,17 +7,13 @@ the process, faces of more than four nodes become triangles, and packed values s
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vizlight._types import Array, Bools, Foreign
 from vizlight.mesh import unrolled
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from vizlight._types import Array, Bools, Foreign
 
 __all__ = ["Topology", "surface", "tables", "topology", "with_nodes"]
 

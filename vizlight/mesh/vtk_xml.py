@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import base64
 import math
+import mmap
 import re
-from typing import TYPE_CHECKING, BinaryIO
+from collections.abc import Iterator
+from typing import BinaryIO, Literal
 
 import numpy as np
 
 from vizlight.mesh import file_parts
-
-if TYPE_CHECKING:
-    import mmap
-    from collections.abc import Iterator
-    from typing import Literal
 
 __all__ = ["missing_block", "missing_part", "missing_piece"]
 

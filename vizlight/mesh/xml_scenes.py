@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import zipfile
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TypeVar
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check
+from vizlight._types import Array, Indices
 from vizlight.mesh import meaning
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
-    from typing import TypeVar
-
-    from vizlight._types import Array, Indices
-
-    Key = TypeVar("Key")
+Key = TypeVar("Key")
 
 #: Axes to the right, away from the eye and up, by the axis of COLLADA that is up.
 _UP = {

@@ -10,19 +10,16 @@ the incomplete beta function. Lines are in 3-space.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Array
 from vizlight.model import frames, highlight_integral, kernels
 from vizlight.model.manifolds import Cylinder, Highlight
 from vizlight.model.reflection import Met
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array
 
 __all__ = ["Gradient", "diffuse", "diffuse_gradient", "specular", "specular_gradient"]
 

@@ -12,19 +12,15 @@ part, never ``sqrt(1 - along^2)``. Equations and error bounds stand at the publi
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
 from numpy import exp, maximum, minimum
 
+from vizlight._types import Array, Bools
 from vizlight.model import kernels
 
-if TYPE_CHECKING:
-    from typing import TypeAlias
-
-    from vizlight._types import Array, Bools
-
-    Number: TypeAlias = float | Array
+Number: TypeAlias = float | Array
 
 #: Shares of red, green and blue in the luma of a colour (Rec. ITU-R BT.709).
 LUMA = (0.2126, 0.7152, 0.0722)

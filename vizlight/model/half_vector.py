@@ -5,17 +5,12 @@ L, E, R and H are ``wi``, ``wo``, the reflection of wi about the normal N, and t
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Array
 from vizlight.model import frames, kernels, manifolds
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array
 
 __all__ = ["identity", "reflection", "reflection_cosine", "reflection_from_half"]
 

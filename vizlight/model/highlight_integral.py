@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
+from numpy.typing import DTypeLike
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import DTypeLike
-
-    from vizlight._types import Array
+from vizlight._types import Array
 
 #: From this shininess on G is smooth enough at z = 1 to be tabulated to 16 digits.
 TABLE_FROM = 8.0

@@ -19,18 +19,15 @@ exponents are 4 cos^2(beta) and 4 times its own, and the worst error is a maximu
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Array
 from vizlight.model.brightness import dimensions
 from vizlight.model.frames import result
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array
 
 __all__ = [
     "MaximumError",

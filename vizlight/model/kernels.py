@@ -9,14 +9,10 @@ memory.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from vizlight._types import Array, Bools, Indices
+from vizlight._types import Array, Bools, Indices
 
 #: Above this exponent a power is computed from log1p of the deficit 1 - x, whose rounding error
 #: grows more slowly than the exponent; below it multiplication is as accurate and faster.

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from vizlight._types import Array
 from vizlight.model import kernels
-
-if TYPE_CHECKING:
-    from vizlight._types import Array
 
 #: Difference of eigenvalues, as a share of their sum, below which no direction prevails.
 ISOTROPIC = 1e-6

@@ -11,20 +11,17 @@ x_T and x_N are the tangential and the normal part of x. Numbers in brackets are
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from functools import reduce
 from operator import add
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy import absolute, maximum, minimum, sqrt
 
+from vizlight._types import FloatType, Value, Vector
 from vizlight.model import formulas, highlight_integral, kernels
 from vizlight.model.formulas import clamp, only, power, where
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from vizlight._types import FloatType, Value, Vector
 
 #: A direction whose part across the line is at most this many eps counts as along the line: its
 #: azimuth about the line is then rounding error alone.

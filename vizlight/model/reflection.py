@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Array, Bools
 from vizlight.model import frames, kernels
 from vizlight.model.manifolds import ArrayAlgebra, FrameManifold, Highlight
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Bools
 
 __all__ = ["diffuse", "specular"]
 

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkAppendPolyData
 
+from vizlight._types import Array, Foreign, Indices
 from vizlight.mesh.joining import some_cells
 from vizlight.vtk.cells import cell_arrays, connectivity, renumber_corners
 from vizlight.vtk.topology import place_numbers
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from vizlight._types import Array, Foreign, Indices
 
 #: Name of the cell array that is 1 on the cells of other pieces.
 GHOST = "vizlight_ghost"

@@ -11,37 +11,38 @@ import shutil
 import uuid
 import xml.etree.ElementTree as ET
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _compiled, _pool, files
+from vizlight._types import Foreign, Given, Keywords
 from vizlight.draw import cameras
 from vizlight.filters import lighting
 from vizlight.mesh import normals
 from vizlight.pieces import task
-from vizlight.pieces.sources import INDEX, SUFFIX, FilePiece, PieceError, index_files, pieces_of
-from vizlight.pieces.workers import RETRIES, RetryingMap
+from vizlight.pieces.sources import (
+    INDEX,
+    SUFFIX,
+    FilePiece,
+    Piece,
+    PieceError,
+    index_files,
+    pieces_of,
+)
+from vizlight.pieces.task import Job, PieceSummary
+from vizlight.pieces.workers import RETRIES, Map, RetryingMap
+from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
-from vizlight.scene.presets import required_scene
+from vizlight.scene.presets import AnyScene, required_scene
 from vizlight.shading.options import LightOptions
 from vizlight.shading.results import unlit
 from vizlight.vtk import sides
 from vizlight.vtk.corners import SHARP
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Foreign, Given, Keywords
-    from vizlight.pieces.sources import Piece
-    from vizlight.pieces.task import Job, PieceSummary
-    from vizlight.pieces.workers import Map
-    from vizlight.scene import Scene
-    from vizlight.scene.presets import AnyScene
-    from vizlight.vtk.normals import Vote
+from vizlight.vtk.normals import Vote
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,10 @@ import itertools
 import math
 import threading
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import pyvista as pv
@@ -19,17 +19,13 @@ from vtkmodules import vtkIOXML
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from vizlight import _check, files
+from vizlight._types import Foreign, VectorLike
 from vizlight.mesh.joining import without_ghosts
 from vizlight.pieces.ghosts import GHOST, own_cells, with_layer
 from vizlight.vtk import messages
 from vizlight.vtk.hull import cropped
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from vizlight._types import Foreign, VectorLike
-
-    Extent = tuple[int, ...]
+Extent = tuple[int, ...]
 
 #: Suffix of a piece by its type of mesh, and suffix of an index of pieces by theirs.
 SUFFIX = {kind: formats[0] for kind, formats in files.FORMATS.items() if kind != "MultiBlock"}

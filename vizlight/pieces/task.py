@@ -3,35 +3,31 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeVar
+from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _compiled, _pool, files
+from vizlight._types import Array, Foreign, Given
 from vizlight.draw import cameras
 from vizlight.filters.illuminate import illuminate, light_mesh
 from vizlight.filters.streamlines import streamlines
 from vizlight.mesh import blocks, normals, records
 from vizlight.pieces.ghosts import GHOST
-from vizlight.pieces.sources import INDEX, SUFFIX, PieceError
+from vizlight.pieces.sources import INDEX, SUFFIX, Piece, PieceError
 from vizlight.scene import Scene
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
 from vizlight.shading.results import record_key
 from vizlight.vtk import hull, sides
 from vizlight.vtk.arrays import means
+from vizlight.vtk.normals import Sided, Vote
 from vizlight.vtk.parts import uses_normals
 from vizlight.vtk.polylines import has_lines_only
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-    from pathlib import Path
-
-    from vizlight._types import Array, Foreign, Given
-    from vizlight.pieces.sources import Piece
-    from vizlight.vtk.normals import Sided, Vote
 
 T = TypeVar("T")
 

@@ -8,20 +8,17 @@ import multiprocessing
 import os
 import signal
 import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from vizlight import _check, _progress, _supervise
+from vizlight._types import Foreign
 from vizlight.pieces.sources import PieceError
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
-
-    from vizlight._types import Foreign
-
-    #: ``map``, the ``map`` of an executor, an executor, or a client of Dask.
-    Map = Foreign
+#: ``map``, the ``map`` of an executor, an executor, or a client of Dask.
+Map = Foreign
 
 T = TypeVar("T")
 

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Literal, TypeAlias, TypeGuard
 
 import numpy as np
 
 from vizlight import _check
+from vizlight._types import Color, Keywords, Vector
 from vizlight.scene.light import WHITE, Light, default_lights
 from vizlight.scene.view import View, as_view, is_camera
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from typing import TypeAlias, TypeGuard
-
     import pyvista as pv
     from vtkmodules.vtkRenderingCore import vtkCamera, vtkLight, vtkProperty
-
-    from vizlight._types import Color, Keywords, Vector
 
     AnyLight: TypeAlias = Light | vtkLight
     Lights: TypeAlias = AnyLight | Iterable[AnyLight] | None

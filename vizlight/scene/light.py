@@ -5,17 +5,14 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vizlight import _check
+from vizlight._types import Array, Color, ColorLike, Vector, VectorLike
 from vizlight.model import falloff
 from vizlight.scene.keywords import named
 from vizlight.scene.view import View
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, Color, ColorLike, Vector, VectorLike
 
 __all__ = ["Light"]
 

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from vizlight import _check
+from vizlight._types import Color, ColorLike
 from vizlight.scene import conversion
 from vizlight.scene.keywords import named
 
 if TYPE_CHECKING:
     import pyvista as pv
     from vtkmodules.vtkRenderingCore import vtkProperty
-
-    from vizlight._types import Color, ColorLike
 
 __all__ = ["Material"]
 

@@ -9,12 +9,14 @@ are lamps of a room, since a surface in all hues looks like data.
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 
 from vizlight import _check
 from vizlight._questions import QUESTIONS
+from vizlight._types import Array
 from vizlight.model.formulas import LUMA
 from vizlight.scene.light import Light, of_eye
 from vizlight.scene.material import Material
@@ -22,12 +24,8 @@ from vizlight.scene.scene import Scene
 from vizlight.scene.view import View, as_view
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import pyvista as pv
     from vtkmodules.vtkRenderingCore import vtkCamera
-
-    from vizlight._types import Array
 
     Eye: TypeAlias = View | vtkCamera | pv.BasePlotter | None
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypedDict
 import numpy as np
 
 from vizlight import _check
+from vizlight._types import Color, ColorLike, Keywords, VectorLike
 from vizlight.scene import conversion
 from vizlight.scene.keywords import named
 from vizlight.scene.light import Light
@@ -19,8 +20,6 @@ from vizlight.scene.view import DepthCue, View, as_view
 if TYPE_CHECKING:
     import pyvista as pv
     from typing_extensions import Unpack
-
-    from vizlight._types import Color, ColorLike, Keywords, VectorLike
 
 __all__ = ["Scene"]
 

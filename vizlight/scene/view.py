@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeGuard
 
 import numpy as np
 
 from vizlight import _check
+from vizlight._types import Array, Color, ColorLike, Vector, VectorLike
 from vizlight.scene.keywords import named
 
 if TYPE_CHECKING:
-    from typing import TypeGuard
-
     from vtkmodules.vtkRenderingCore import vtkCamera
-
-    from vizlight._types import Array, Color, ColorLike, Vector, VectorLike
 
 __all__ = ["DepthCue", "View"]
 

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Iterator, Sequence
+from typing import Protocol
 
 import numpy as np
 
+from vizlight._types import Color, Value, Vector
 from vizlight.model import falloff, formulas
-from vizlight.model.manifolds import ALONG, Vectors
+from vizlight.model.manifolds import ALONG, Highlight, Vectors
 from vizlight.scene.light import WHITE
 from vizlight.scene.view import unit
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from vizlight._types import Color, Value, Vector
-    from vizlight.model.manifolds import Highlight
-    from vizlight.shading.plan import Plan
+from vizlight.shading.plan import Plan
 
 
 class Lamp:

@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import DTypeLike
 
+from vizlight._types import Array, Bools, Raw, Slice, Value, Vector
 from vizlight.model import frames, highlight_integral, kernels
-from vizlight.shading.algebra import Algebra
+from vizlight.shading.algebra import Algebra, Lamp
+from vizlight.shading.inputs import ArraySource, ShadingInputs
+from vizlight.shading.plan import Plan
 from vizlight.shading.terms import light
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import DTypeLike
-
-    from vizlight._types import Array, Bools, Raw, Slice, Value, Vector
-    from vizlight.shading.algebra import Lamp
-    from vizlight.shading.inputs import ArraySource, ShadingInputs
-    from vizlight.shading.plan import Plan
 
 #: Coordinates below this leave no room in float32 for the rest beyond its digits.
 SMALLEST_HELD = 1e-30

@@ -8,22 +8,18 @@ them by one number from 0.3 to 1, without a highlight. Every way to show data co
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, TypeAlias
+from collections.abc import Sequence
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Color
 from vizlight.model import formulas
+from vizlight.scene import Scene
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from vizlight._types import Array, Bools, Color
-    from vizlight.scene import Scene
-
-    Bytes: TypeAlias = NDArray[np.uint8]
+Bytes: TypeAlias = NDArray[np.uint8]
 
 #: Least ambient coefficient, and least light, of colours of data.
 LEAST = 0.3

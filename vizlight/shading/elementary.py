@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
+from collections.abc import Iterable
 
 #: Elementary functions: exp of numbers of 0 or less, log of x where d = 1 - x is known, arctan2 of
 #: y of 0 or more, and the table of the cylinder's integral. Polynomials are from Cephes.

@@ -8,31 +8,24 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike, DTypeLike
 
 from vizlight import _check, _compiled, _pool
+from vizlight._types import Array, Keywords, Slice
 from vizlight.model import kernels
-from vizlight.scene import Scene
+from vizlight.scene import Scene, View
 from vizlight.scene.keywords import named
 from vizlight.shading import loops
 from vizlight.shading.arrays import Shading, columns, shade_block
 from vizlight.shading.inputs import ArraySource, Layout, ShadingInputs, array_source
-from vizlight.shading.options import Model, Precision, ShadingOptions
+from vizlight.shading.options import Exponent, Model, Precision, ShadingOptions
 from vizlight.shading.plan import Plan, decide
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import TypeAlias
-
-    from numpy.typing import ArrayLike, DTypeLike
-
-    from vizlight._types import Array, Keywords, Slice
-    from vizlight.scene import View
-    from vizlight.shading.options import Exponent
-
-    Progress: TypeAlias = Callable[[int, int], None]
+Progress: TypeAlias = Callable[[int, int], None]
 
 __all__ = [
     "ArraySource",

@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import AnyArray, Array, Indices, RawType, Rows, Vector
-
+from vizlight._types import AnyArray, Array, Indices, RawType, Rows, Vector
 
 #: Names of the arrays: vectors of the space, and numbers.
 PLACED = ("points", "tangents", "normals", "base_tangents")

@@ -12,30 +12,25 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
+from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vizlight import _compiled, _pool
+from vizlight._types import Array, Keywords, Raw, Slice, Value, Vector
 from vizlight.model import frames, highlight_integral
 from vizlight.scene.light import NO_ATTENUATION
+from vizlight.shading.algebra import Lamp
 from vizlight.shading.arrays import SMALLEST_HELD, Shading, shade_block
 from vizlight.shading.elementary import HELPERS, prelude
-from vizlight.shading.inputs import PLACED, SHARES
+from vizlight.shading.inputs import PLACED, SHARES, ArraySource, ShadingInputs
 from vizlight.shading.options import ShadingOptions
+from vizlight.shading.plan import Plan
 from vizlight.shading.symbols import Components, Symbol, Writer
 from vizlight.shading.terms import light
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Keywords, Raw, Slice, Value, Vector
-    from vizlight.shading.algebra import Lamp
-    from vizlight.shading.inputs import ArraySource, ShadingInputs
-    from vizlight.shading.plan import Plan
 
 #: Number of points whose multiples fill all vectors of a processor, in unrolled loops too.
 LANES = 64

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Given, Keywords
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
     from typing_extensions import Self
-
-    from vizlight._types import Given, Keywords
 
 Model = Literal["phong", "blinn", "cylinder"]
 Precision = Literal["float32", "float64"]

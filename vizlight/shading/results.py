@@ -6,18 +6,16 @@ import dataclasses
 import zlib
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from vizlight import _check
+from vizlight._types import Array, Raw
 from vizlight._version import __version__
+from vizlight.scene import Scene
+from vizlight.shading.engine import Shading
 from vizlight.shading.options import Options
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, Raw
-    from vizlight.scene import Scene
-    from vizlight.shading.engine import Shading
 
 #: Contents of a record in JSON: the scene, the options and facts about the result.
 Record: TypeAlias = dict[str, object]

@@ -7,17 +7,15 @@ second notation: each operation is written down as a statement, and its result i
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Protocol
 
+from vizlight._types import Value
 from vizlight.shading.algebra import Algebra
+from vizlight.shading.plan import Plan
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
     import numpy as np
-
-    from vizlight._types import Value
-    from vizlight.shading.plan import Plan
 
 _SIGNS = {
     "add": "+", "subtract": "-", "multiply": "*", "divide": "/", "true_divide": "/",

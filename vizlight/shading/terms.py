@@ -13,24 +13,19 @@ brackets); the Lecture on shading; cos-theta shadows.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import reduce
 from operator import add
-from typing import TYPE_CHECKING
 
 from numpy import absolute
 
+from vizlight._types import Value
 from vizlight.model import formulas
 from vizlight.model.formulas import where
-from vizlight.model.manifolds import Cylinder, FrameManifold, Surface
+from vizlight.model.manifolds import Cylinder, FrameManifold, Highlight, Split, Surface
 from vizlight.scene.light import NO_ATTENUATION
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from vizlight._types import Value
-    from vizlight.model.manifolds import Highlight, Split
-    from vizlight.shading.algebra import Algebra, Lamp, Total
-    from vizlight.shading.plan import Plan
+from vizlight.shading.algebra import Algebra, Lamp, Total
+from vizlight.shading.plan import Plan
 
 
 def light(w: Algebra, plan: Plan) -> None:

@@ -8,21 +8,19 @@ normalised and lit. Only tangents that stand for lines without sign are turned a
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from vizlight import _pool
+from vizlight._types import Array, Indices, Rows
 from vizlight.model import kernels
 from vizlight.model.frames import orthonormalize
+from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, Indices, Rows
-    from vizlight.scene import Light, Scene, View
-    from vizlight.shading.engine import Shading
-    from vizlight.shading.inputs import ArraySource, ShadingInputs
-    from vizlight.shading.options import ShadingOptions
+from vizlight.shading.engine import Shading
+from vizlight.shading.inputs import ArraySource, ShadingInputs
+from vizlight.shading.options import ShadingOptions
 
 #: Number of places that are lit at once.
 BLOCK = 1 << 17

@@ -10,20 +10,16 @@ from __future__ import annotations
 
 import math
 import operator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
-from vizlight.scene import View
+from vizlight.scene import DepthCue, Light, Scene, View
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from vizlight.scene import DepthCue, Light, Scene
-
-    #: Number of an oracle's own type, which is float in the package.
-    Real: TypeAlias = float
-    Vector: TypeAlias = Sequence[Real]
+#: Number of an oracle's own type, which is float in the package.
+Real: TypeAlias = float
+Vector: TypeAlias = Sequence[Real]
 
 WHITE = (1.0, 1.0, 1.0)
 #: Length below which numbers of float64 lose digits.

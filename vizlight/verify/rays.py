@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Array, Indices, VectorLike
+from vizlight._types import Array, Indices, VectorLike
 
 
 def relief_ratio(
     x: Array, y: Array, z: Array, place: Array, normal: Array, depth: float, *,
-    way: VectorLike | None, end: VectorLike | None = None, base: float = -math.inf,
-    wall: bool = False,
+    way: VectorLike | None, end: VectorLike | None = None, wall: bool = False,
 ) -> float:  # fmt: skip
     """Return t of a node of a height field, its ray cut at every plane of nodes.
 
@@ -36,8 +32,6 @@ def relief_ratio(
         Direction toward the light, above the horizon.
     end : vector of 3 components, optional
         Position of the light, in place of ``way``.
-    base : float
-        Height at which the solid ends below.
     wall : bool
         Whether the solid ends at the border of the field; otherwise it goes on beyond it.
 
@@ -57,8 +51,8 @@ def relief_ratio(
         # No solid is above the highest node.
         cut = highest / along[2]
         along, near = along * cut, near / cut if cut else math.inf
-    bounds = ((x, start[0], along[0]), (y, start[1], along[1]), ([base], start[2], along[2]))
-    # Shares of the ray at which it crosses a plane of nodes, or the base.
+    bounds = ((x, start[0], along[0]), (y, start[1], along[1]))
+    # Shares of the ray at which it crosses a plane of nodes.
     cuts = [(np.asarray(at) - first) / step for at, first, step in bounds if step]
     shares = np.concatenate([[0.0, 1.0, near], *cuts])
     ends = np.unique(shares[(shares >= 0) & (shares <= 1)])
@@ -80,7 +74,6 @@ def relief_ratio(
         parts[:, better], f[better] = above[:, better], 0.0
     # Where no cell has a surface the ray is outside of the solid.
     share = _positive(*np.where(np.isfinite(f), parts, -1.0))
-    share[~(middle[:, 2] > base)] = 0
     # The part within the four cells is below the plane instead.
     share[high <= near] = 0
     inside = float(share @ (high - low)) * math.hypot(*along) + flat

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,16 +15,13 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkCellDataToPointData
 
 from vizlight import _check
+from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices, Rows
 from vizlight.model import line_fields
+from vizlight.shading.inputs import ArraySource
 from vizlight.vtk.cells import as_numpy, as_vtk, cell_arrays, connectivity, dimensions, places
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
-
     from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
-
-    from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices, Rows
-    from vizlight.shading.inputs import ArraySource
 
 
 class MadePoints:

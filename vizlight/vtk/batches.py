@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
 
+from vizlight._types import Dataset, Foreign, Indices
 from vizlight.vtk import hull, polylines
 from vizlight.vtk.cells import (
     GHOSTS,
@@ -21,11 +23,6 @@ from vizlight.vtk.cells import (
     point_data,
     vtk_points,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from vizlight._types import Dataset, Foreign, Indices
 
 #: Number of points up to which a dataset is joined with others, and of all that are joined: the
 #: directions of pieces are found from all normals only of so few.

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from vizlight import _pool
+from vizlight._types import Array, Bools, Indices, Raw
 from vizlight.geometry.lines.simplices import EDGES, components
 from vizlight.model import kernels
 from vizlight.vtk import loops
@@ -15,11 +17,7 @@ from vizlight.vtk.cells import as_numpy, connectivity, places, triangles
 from vizlight.vtk.topology import BLOCK, double_cover
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from vtkmodules.vtkCommonDataModel import vtkPolyData
-
-    from vizlight._types import Array, Bools, Indices, Raw
 
 
 #: Height of a face, and of a corner, as a share of its longest side, below which its direction is

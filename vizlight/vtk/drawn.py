@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from vtkmodules.vtkCommonDataModel import (
     VTK_POLYGON,
@@ -17,6 +15,7 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 
 from vizlight import _pool
+from vizlight._types import AnyArray, Bools, Dataset, Indices, Rows, Slice
 from vizlight.vtk.cells import (
     GHOSTS,
     as_numpy,
@@ -27,9 +26,6 @@ from vizlight.vtk.cells import (
     grid_cells,
     has_faces,
 )
-
-if TYPE_CHECKING:
-    from vizlight._types import AnyArray, Bools, Dataset, Indices, Rows, Slice
 
 #: Numbers of corners.
 SEGMENT, TRIANGLE, QUAD = 2, 3, 4

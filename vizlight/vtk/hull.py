@@ -6,9 +6,11 @@ of Bezier are taken as cells of Lagrange, with nodes on the surface of the mesh.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, TypeAlias, TypeGuard
 
 import numpy as np
+from numpy.typing import NDArray
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (
     VTK_BEZIER_CURVE,
@@ -26,6 +28,7 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter, vtkGeometryFilter
 
 from vizlight import _pool
+from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices, Raw
 from vizlight.vtk.arrays import points_of
 from vizlight.vtk.cells import (
     GHOSTS,
@@ -41,15 +44,7 @@ from vizlight.vtk.cells import (
     point_data,
 )
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from typing import TypeGuard
-
-    from numpy.typing import NDArray
-
-    from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices, Raw
-
-    Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
+Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
 
 #: Attributes of rational cells: weights of points, and degrees of cells along their axes.
 _WEIGHTS, _DEGREES = (

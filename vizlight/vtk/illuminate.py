@@ -4,30 +4,25 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from vizlight import _check
+from vizlight._types import Foreign, Keywords, Raw
 from vizlight.scene import Scene
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import as_scene
 from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import LightOptions
+from vizlight.shading.options import Exponent, Facing, LightOptions, Model, Precision
 from vizlight.shading.results import arrays_of, digest, of_light, record_key, unlit
 from vizlight.vtk.cells import GHOSTS, as_vtk, check_whole
 from vizlight.vtk.parts import Part, part_of, uses_normals
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Foreign, Keywords, Raw
-    from vizlight.shading.options import Exponent, Facing, Model, Precision
 
 __all__ = ["Illuminate"]
 

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vizlight import _compiled
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Bools, Indices, Raw
+from vizlight._types import Array, Bools, Indices, Raw
 
 #: Seconds that a kernel saves per corner of a face, per triangle in the two next, and per edge.
 CORNER_SAVED, DIRECTION_SAVED, SURVEY_SAVED, EDGE_SAVED = 2.5e-8, 3.5e-8, 7e-8, 2e-8

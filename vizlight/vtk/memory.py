@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import itertools
 import threading
-from typing import TYPE_CHECKING, NamedTuple, cast
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar, cast
 
 from vtkmodules.vtkCommonCore import vtkWeakReference
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
+from vizlight._types import Dataset
 from vizlight.shading.results import digest
 from vizlight.vtk.cells import POLYDATA, as_numpy, places
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import TypeVar
-
-    from vizlight._types import Dataset
-
-    T = TypeVar("T")
+T = TypeVar("T")
 
 #: Number of points of all surfaces of which something is kept at most, the last ones.
 MOST = 1 << 26

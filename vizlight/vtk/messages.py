@@ -8,16 +8,13 @@ import re
 import struct
 import sys
 import threading
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from vtkmodules.util.misc import calldata_type
 from vtkmodules.util.vtkConstants import VTK_STRING
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from vizlight._types import Foreign
+from vizlight._types import Foreign
 
 __all__ = ["captured_errors", "first_line", "reason"]
 

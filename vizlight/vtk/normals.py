@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Raw, Rows, Slice
 from vizlight.model import kernels
+from vizlight.scene import View
+from vizlight.shading.inputs import ArraySource
+from vizlight.shading.options import Facing
 from vizlight.shading.results import digest
 from vizlight.vtk import hull
 from vizlight.vtk.arrays import vectors_of
@@ -40,7 +46,7 @@ from vizlight.vtk.corners import (
     joined,
     surface_normals,
 )
-from vizlight.vtk.hull import dimension, scattered, surface_of
+from vizlight.vtk.hull import Grid, dimension, scattered, surface_of
 from vizlight.vtk.memory import once, recalled
 from vizlight.vtk.orientation import (
     CORNERS,
@@ -62,17 +68,6 @@ from vizlight.vtk.topology import (
     single_edges,
     topology,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Raw, Rows, Slice
-    from vizlight.scene import View
-    from vizlight.shading.inputs import ArraySource
-    from vizlight.shading.options import Facing
-    from vizlight.vtk.hull import Grid
 
 #: Least number of points, where there are as many, by which the side of a height field is found.
 SEEN = 1 << 16

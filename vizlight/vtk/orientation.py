@@ -7,20 +7,19 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vizlight import _pool
+from vizlight._types import Array, Bools, Indices, Raw, Slice
 from vizlight.model import kernels
+from vizlight.scene import View
 from vizlight.vtk import loops
 from vizlight.vtk.cells import connectivity, faces, finite_points, places, triangles
 from vizlight.vtk.corners import NEAR, SHARP, Slivers, all_slivers, slivers_of
 from vizlight.vtk.topology import BLOCK, SortedEdges, ends_of, sorted_edges, topology
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
     from vtkmodules.vtkCommonDataModel import vtkPolyData
-
-    from vizlight._types import Array, Bools, Indices, Raw, Slice
-    from vizlight.scene import View
 
 #: A piece counts as nearly closed if the sum of the area vectors of its faces is shorter than this
 #: share of its area.

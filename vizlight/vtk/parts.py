@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from vizlight import _check
-from vizlight.shading.inputs import ShadingInputs, Sides
+from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Keywords
+from vizlight.scene import Scene, View
+from vizlight.shading.arrays import Shading
+from vizlight.shading.inputs import ArraySource, ShadingInputs, Sides
+from vizlight.shading.options import LightOptions
 from vizlight.shading.plan import not_a_line
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import is_of_cells, named, points_of, tangents_of
+from vizlight.vtk.batches import Batch
 from vizlight.vtk.normals import Sided, Turned, Vote, computed_normals, sided_normals
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Keywords
-    from vizlight.scene import Scene, View
-    from vizlight.shading.arrays import Shading
-    from vizlight.shading.inputs import ArraySource
-    from vizlight.shading.options import LightOptions
-    from vizlight.vtk.batches import Batch
 
 
 class Part(NamedTuple):

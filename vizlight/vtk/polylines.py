@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkStripper
 
+from vizlight._types import Array, Bools, Dataset, Indices
 from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.vtk import hull
 from vizlight.vtk.cells import as_vtk, connectivity, faces, places
 from vizlight.vtk.memory import once
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight._types import Array, Bools, Dataset, Indices
 
 #: VTK's types of cells: lines, polylines, quadratic edges, cubic lines, and curves of any degree
 #: by Lagrange and by Bezier.

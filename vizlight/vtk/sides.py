@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vizlight import _pool
+from vizlight._types import Array, Bools, Dataset, Indices
 from vizlight.model import kernels
+from vizlight.scene import View
 from vizlight.vtk.corners import crease_share
 from vizlight.vtk.normals import Sided, Vote, facing_of, given_normals, wound_normals
 from vizlight.vtk.orientation import middles, sides_of
 from vizlight.vtk.topology import BLOCK, double_cover, place_numbers
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Bools, Dataset, Indices
-    from vizlight.scene import View
 
 #: Number of directions in which the outermost normals of a piece are searched for, and number of
 #: normals up to which all are taken.

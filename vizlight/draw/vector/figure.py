@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkRenderingCore import vtkActor
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Color, Slice
+from vizlight.draw.live import Live
 from vizlight.draw.vector import VECTORS
-from vizlight.draw.vector.files import Fill, Picture, Plate, Sheet, pdf_of, svg_of
+from vizlight.draw.vector.files import Fill, Item, Picture, Plate, Sheet, pdf_of, svg_of
 from vizlight.draw.vector.lines import Course, course_of, lines_of, strokes_of
 from vizlight.draw.vector.samples import Samples, enlarged, samples_of
 from vizlight.draw.vector.words import words_of
@@ -21,15 +25,6 @@ from vizlight.geometry.contours.faces import faces
 from vizlight.geometry.contours.levels import levels
 from vizlight.geometry.contours.palette import FEWER, nearest_colors, palette_of
 from vizlight.geometry.contours.steady import steadied
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vtkmodules.vtkRenderingCore import vtkActor
-
-    from vizlight._types import Array, Bools, Color, Slice
-    from vizlight.draw.live import Live
-    from vizlight.draw.vector.files import Item
 
 __all__ = ["save_graphic"]
 

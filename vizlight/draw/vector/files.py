@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import base64
 import io
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
+from vizlight._types import Array, Color
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Color
 
 __all__ = ["Fill", "Item", "Picture", "Polyline", "Sheet", "Words", "figure_of", "pdf_of", "svg_of"]
 

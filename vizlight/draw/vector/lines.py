@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
 
+from vizlight._types import Array, Bools, Color, Indices
 from vizlight.draw.cameras import pixel_sizes
 from vizlight.draw.glsl import Stroke as Style
-from vizlight.draw.live import in_view, matrix_of
+from vizlight.draw.live import Live, in_view, matrix_of
 from vizlight.draw.strokes import LEAST, line_samples
 from vizlight.draw.vector.files import Fill, Polyline
-from vizlight.draw.vector.samples import actors_of
+from vizlight.draw.vector.samples import Samples, actors_of
 from vizlight.geometry.contours.palette import nearest_colors
 from vizlight.geometry.contours.rings import SEEN, simplified
 from vizlight.vtk.polylines import cells_of, has_lines_only
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
-
-    from vizlight._types import Array, Bools, Color, Indices
-    from vizlight.draw.live import Live
-    from vizlight.draw.vector.samples import Samples
 
 __all__ = ["Course", "Lines", "course_of", "lines_of", "strokes_of"]
 

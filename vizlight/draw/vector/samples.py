@@ -8,23 +8,18 @@ translucent ones, keep their 8 bits.
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
+import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkFloatArray, vtkUnsignedCharArray
-from vtkmodules.vtkRenderingCore import vtkActor, vtkProp
+from vtkmodules.vtkRenderingCore import vtkActor, vtkProp, vtkRenderer
 
+from vizlight._types import Array
 from vizlight.draw.live import items
 from vizlight.draw.strokes import has_pass
 from vizlight.vtk.cells import as_numpy
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
-    import pyvista as pv
-    from vtkmodules.vtkRenderingCore import vtkRenderer
-
-    from vizlight._types import Array
 
 __all__ = ["Samples", "actors_of", "enlarged", "samples_of"]
 

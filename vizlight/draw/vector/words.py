@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
 
 import numpy as np
+import pyvista as pv
 from vtkmodules.vtkRenderingAnnotation import vtkCornerAnnotation, vtkScalarBarActor
-from vtkmodules.vtkRenderingCore import vtkTextActor
+from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer, vtkTextActor, vtkTextProperty
 
+from vizlight._types import Array, Color
 from vizlight.draw.live import items
-from vizlight.draw.vector.files import ASCENT, DESCENT, LINE, Fill, Words
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    import pyvista as pv
-    from vtkmodules.vtkRenderingCore import vtkProp, vtkRenderer, vtkTextProperty
-
-    from vizlight._types import Array, Color
-    from vizlight.draw.vector.files import Item
+from vizlight.draw.vector.files import ASCENT, DESCENT, LINE, Fill, Item, Words
 
 __all__ = ["words_of"]
 

@@ -5,18 +5,15 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from vizlight._types import Array, Bools, Indices, Slice
+from vizlight.geometry.contours.spacing import LuminanceSteps
 
-    from vizlight._types import Array, Bools, Indices, Slice
-    from vizlight.geometry.contours.spacing import LuminanceSteps
-
-    Luminance = Callable[[Indices, Indices, Array, Indices], Array]
+Luminance = Callable[[Indices, Indices, Array, Indices], Array]
 
 #: Share of an edge to which a contour point is found, about the rounding of the luminance.
 WIDTH = 2.0**-40

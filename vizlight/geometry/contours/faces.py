@@ -9,10 +9,13 @@ surface.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from vizlight._types import Array, Bools, Indices
 from vizlight.geometry.contours.palette import JUMP, Palette
 from vizlight.geometry.contours.rings import (
     END,
@@ -26,13 +29,6 @@ from vizlight.geometry.contours.rings import (
     walked,
 )
 from vizlight.geometry.contours.steady import slopes
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Bools, Indices
 
 __all__ = ["Face", "faces"]
 

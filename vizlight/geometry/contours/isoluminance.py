@@ -7,23 +7,20 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Array, Indices, VectorLike
 from vizlight.geometry import axial
 from vizlight.geometry.contours import banding, refinement, spacing
 from vizlight.geometry.contours.banding import Bands
+from vizlight.geometry.contours.refinement import Luminance
+from vizlight.geometry.contours.spacing import Levels, LuminanceSteps
 from vizlight.geometry.solids import primitives, triangle_mesh
 from vizlight.model import kernels
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Indices, VectorLike
-    from vizlight.geometry.contours.refinement import Luminance
-    from vizlight.geometry.contours.spacing import Levels, LuminanceSteps
 
 __all__ = ["Bands", "sphere", "truncus", "virtual_light"]
 

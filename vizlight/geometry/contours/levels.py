@@ -6,11 +6,14 @@ border between two levels is then written once, and one painter's order leaves n
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 import scipy
+from numpy.typing import NDArray
 
+from vizlight._types import Array, Bools, Indices
 from vizlight.geometry.contours.faces import Face
 from vizlight.geometry.contours.palette import JUMP, Palette
 from vizlight.geometry.contours.rings import (
@@ -24,13 +27,6 @@ from vizlight.geometry.contours.rings import (
     walked,
 )
 from vizlight.geometry.contours.steady import slopes
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Bools, Indices
 
 __all__ = ["levels"]
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Bools, Indices
+from vizlight._types import Array, Bools, Indices
 
 __all__ = ["FEWER", "JUMP", "Palette", "nearest_colors", "palette_of"]
 

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Indices
 from vizlight.geometry.contours import banding, spacing
+from vizlight.geometry.contours.banding import Bands
+from vizlight.geometry.contours.spacing import Levels, LuminanceSteps
 from vizlight.geometry.solids import exact_surfaces, triangle_mesh
+from vizlight.geometry.solids.triangle_mesh import Mesh
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight._types import Array, Bools, Indices
-    from vizlight.geometry.contours.banding import Bands
-    from vizlight.geometry.contours.spacing import Levels, LuminanceSteps
-    from vizlight.geometry.solids.triangle_mesh import Mesh
-
-    Luminance = Callable[[Array, Array], Array]
-    Progress = Callable[[float], None]
+Luminance = Callable[[Array, Array], Array]
+Progress = Callable[[float], None]
 
 
 #: Largest number of rounds of refinement, and numbers of triangles and polygons that end it.

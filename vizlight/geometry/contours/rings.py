@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from vizlight._types import Array, Bools, Indices
+from vizlight._types import Array, Bools, Indices
 
 __all__ = ["END", "SEEN", "STAIR", "WAYS", "area_of", "shifted", "simplified", "smoothed", "walked"]
 

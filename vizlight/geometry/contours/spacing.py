@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import math
 import numbers
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
 
 from vizlight import _check
+from vizlight._types import Array, Indices
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import TypeAlias
-
-    from vizlight._types import Array, Indices
-
-    Levels: TypeAlias = int | float | Sequence[float] | Array
+Levels: TypeAlias = int | float | Sequence[float] | Array
 
 #: Largest number of steps; a float32 picture cannot show more.
 MOST = 1 << 20

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import scipy
 
-if TYPE_CHECKING:
-    from vizlight._types import Array, Bools, Slice
+from vizlight._types import Array, Bools, Slice
 
 __all__ = ["slopes", "steadied"]
 

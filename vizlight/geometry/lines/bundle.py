@@ -16,19 +16,16 @@ another's shadow.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from vizlight import _compiled, _pool
+from vizlight._types import Array, Bools, Indices, Slice, VectorLike
 from vizlight.geometry import axial
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from vizlight._types import Array, Bools, Indices, Slice, VectorLike
 
 __all__ = ["Medium", "Targets", "directions", "medium"]
 

@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
 
+from vizlight._types import Array, Bools, Indices
 from vizlight.geometry.lines.simplices import CellPlaces, Columns
-from vizlight.geometry.lines.tracing import Curves, Flow, Walkers, passed
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from vizlight._types import Array, Bools, Indices
-    from vizlight.geometry.lines.tracing import Curves, Flow, Tracing
+from vizlight.geometry.lines.tracing import Curves, Flow, Tracing, Walkers, passed
 
 #: Samples of curves per spacing.
 SAMPLES = 4

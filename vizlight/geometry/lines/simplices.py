@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _compiled, _pool
+from vizlight._types import Array, Bools, Indices, Rows
 
 if TYPE_CHECKING:
     from typing_extensions import Self
-
-    from vizlight._types import Array, Bools, Indices, Rows
 
 #: Largest number of cells that one step crosses.
 MOST_CROSSINGS = 300

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight.geometry.lines.simplices import Columns, Simplices, numbered
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight._types import Array, Bools, Indices
-    from vizlight.geometry.lines.simplices import CellPlaces
+from vizlight._types import Array, Bools, Indices
+from vizlight.geometry.lines.simplices import CellPlaces, Columns, Simplices, numbered
 
 
 def double_cover(points: Array, cells: Indices, pairs: Array) -> tuple[Simplices, Array]:

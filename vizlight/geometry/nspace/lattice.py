@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
 from vizlight import _check
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Foreign, Indices
-
+from vizlight._types import Foreign, Indices
 
 #: Corners of a segment, a quadrilateral and a hexahedron, in VTK's order.
 _CORNERS: dict[int, tuple[tuple[int, ...], ...]] = {

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import AnyArray, Array, Indices, Numbers
 from vizlight.geometry.nspace import lattice
 from vizlight.model.frames import orthonormalize
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import AnyArray, Array, Indices, Numbers
-
-    Function = Callable[..., Iterable[ArrayLike]]
-    TangentFunction = Callable[..., Iterable[Iterable[ArrayLike]]]
-    Samples = Callable[..., tuple[Array, Array]]
+Function = Callable[..., Iterable[ArrayLike]]
+TangentFunction = Callable[..., Iterable[Iterable[ArrayLike]]]
+Samples = Callable[..., tuple[Array, Array]]
 
 __all__ = ["Manifold", "parametric", "torus"]
 

@@ -4,20 +4,15 @@ from __future__ import annotations
 
 import math
 import numbers
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Array, Indices
 from vizlight.model import frames
 from vizlight.model.frames import default_rtol, orthonormalize
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Indices
 
 __all__ = [
     "image_and_depth",

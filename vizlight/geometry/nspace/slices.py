@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import scipy
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import AnyArray, Array, Foreign, Indices
 from vizlight.model import frames
 from vizlight.model.frames import default_rtol, orthonormalize
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import AnyArray, Array, Foreign, Indices
 
 __all__ = ["cut", "mean_frame", "slice_frame"]
 

@@ -11,14 +11,11 @@ field, both by NumPy; :func:`exact` is the compiled code for some nodes of any f
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vizlight import _compiled
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, Bools, Indices
+from vizlight._types import Array, Bools, Indices
 
 #: Stands for the slope of a horizon without terrain.
 NONE = -1e300

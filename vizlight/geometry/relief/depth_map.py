@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Bools, Indices
+from vizlight._types import Array, Bools, Indices
 
 __all__ = ["depth_map"]
 

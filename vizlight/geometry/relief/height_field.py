@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 import scipy
+from numpy.typing import ArrayLike
 
 from vizlight import _check
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Indices
+from vizlight._types import Array, Indices
 
 Border = Literal["extend", "wall"]
 

@@ -10,21 +10,16 @@ from __future__ import annotations
 
 import contextlib
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check, _compiled, _pool
+from vizlight._types import Array, Bools, Indices, Slice, VectorLike
 from vizlight.geometry.relief import height_field
+from vizlight.geometry.relief.height_field import Border, Bounds, Field
 from vizlight.model import kernels
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Bools, Indices, Slice, VectorLike
-    from vizlight.geometry.relief.height_field import Border, Bounds, Field
 
 __all__ = ["inside_length", "shadow"]
 

@@ -19,20 +19,16 @@ from __future__ import annotations
 import contextlib
 import itertools
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check, _compiled, _pool
+from vizlight._types import Array, Indices, Slice
 from vizlight.geometry.relief import crossings, height_field
 from vizlight.geometry.relief.crossings import NONE, between, crossed
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Indices, Slice
 
 
 @_compiled.kernel(inline=True, rounding=_compiled.ROUNDING)

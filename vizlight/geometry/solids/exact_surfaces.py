@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vizlight._types import Array, Bools, Indices
 from vizlight.model import kernels
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from vizlight._types import Array, Bools, Indices
 
 
 @dataclass(frozen=True)

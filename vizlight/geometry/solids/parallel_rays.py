@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from vizlight._types import Array, Bools, Indices
 from vizlight.geometry import axial
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, Bools, Indices
 
 #: Largest number of pairs of a ray and a triangle that are tested at once.
 PAIRS = 1 << 17

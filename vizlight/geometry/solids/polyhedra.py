@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Dataset, Foreign, Indices, VectorLike
 from vizlight.geometry import axial
 from vizlight.geometry.solids import parallel_rays
-from vizlight.geometry.solids.exact_surfaces import Plane
+from vizlight.geometry.solids.exact_surfaces import Plane, Surface
 from vizlight.geometry.solids.primitives import Block, Primitive, place
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Array, Bools, Dataset, Foreign, Indices, VectorLike
-    from vizlight.geometry.solids.exact_surfaces import Surface
 
 __all__ = ["HalfSpace", "Polyhedron", "Prism"]
 

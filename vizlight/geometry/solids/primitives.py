@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Array, Bools, VectorLike
 from vizlight.geometry import axial
-from vizlight.geometry.solids.exact_surfaces import Ball, Cone, Plane, Ring
+from vizlight.geometry.solids.exact_surfaces import Ball, Cone, Plane, Ring, Surface
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import ArrayLike
     from typing_extensions import Self
-
-    from vizlight._types import Array, Bools, VectorLike
-    from vizlight.geometry.solids.exact_surfaces import Surface
 
 
 __all__ = ["Block", "Boolean", "Frustum", "Primitive", "Solid", "Sphere", "Torus"]

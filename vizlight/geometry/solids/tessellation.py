@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import importlib.util
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ import numpy as np
 import scipy
 
 from vizlight import _check
+from vizlight._types import Array, Bools, Indices
 from vizlight.geometry.solids import triangle_mesh
 from vizlight.geometry.solids.exact_surfaces import Surfaces, onto
 from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron
@@ -23,11 +25,7 @@ from vizlight.geometry.solids.primitives import EXPECTED, Boolean, Primitive, So
 from vizlight.geometry.solids.triangle_mesh import Mesh
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     import manifold3d
-
-    from vizlight._types import Array, Bools, Indices
 
 __all__ = ["tessellate"]
 

@@ -5,18 +5,14 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vizlight._types import Array, Indices
 from vizlight.geometry import axial
 from vizlight.geometry.solids.exact_surfaces import Surfaces
 from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron
-from vizlight.geometry.solids.primitives import Block, Frustum, Sphere, Torus
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, Indices
-    from vizlight.geometry.solids.primitives import Primitive
+from vizlight.geometry.solids.primitives import Block, Frustum, Primitive, Sphere, Torus
 
 #: Corners of the faces of a block, x before y before z, the side of larger coordinates first.
 _FACES = (
