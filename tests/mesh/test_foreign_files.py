@@ -493,3 +493,40 @@ def test_what_an_elevation_model_misses_is_nan(tmp_path):
     assert np.isnan(heights[-1, :4]).all()
     np.testing.assert_array_equal(heights[-1, 4:], rows[0, 4:])
     assert str(mesh.field_data["unit"][0]) == "metre"
+
+
+#: Two triangles in a plane, their four sides and the edge between them.
+FLUENT = """(0 "by hand")
+(2 2)
+(10 (0 1 4 1 2))
+(12 (0 1 2 0))
+(13 (0 1 5 0))
+(10 (1 1 4 1 2)
+(
+0 0
+1 0
+1 1
+0 1
+))
+(13 (2 1 4 3 2)
+(
+1 2 1 0
+2 3 1 0
+3 4 2 0
+4 1 2 0
+))
+(13 (3 5 5 2 2)
+(
+1 3 2 1
+))
+(12 (1 1 2 1 1))
+(45 (1 fluid a)())
+(45 (2 wall b)())
+(45 (3 interior c)())
+"""
+
+
+def test_cells_of_fluent_are_read_once(tmp_path):
+    (tmp_path / "a.cas").write_text(FLUENT)
+    mesh = vizlight.read(tmp_path / "a.cas")
+    assert (mesh.n_points, mesh.n_cells) == (4, 2)
