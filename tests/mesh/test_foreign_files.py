@@ -170,6 +170,9 @@ def test_a_mesh_of_gmsh(tmp_path):
     # The edge of the shape, on which the triangle has a side, is none of the mesh.
     assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
     assert mesh.cell_data.keys() == ["gmsh:geometrical"]
+    path.write_text(GMSH.replace("2 2 1 2", "2 3 1 3"))
+    with pytest.warns(UserWarning, match="gives 2 of the 3 cells that it states"):
+        vizlight.read(path)
 
 
 def test_an_edge_of_a_mesher_that_no_face_has_is_named(tmp_path):
