@@ -377,9 +377,9 @@ def test_tracts_that_are_fewer_than_their_header_states(tmp_path):
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("hello\n", "invalid literal"),
+        ("hello\n", "a word stands where a number should be"),
         ("hello world\n", "could not convert string"),
-        ("\0\1\2", "invalid literal"),
+        ("\0\1\2", "a word stands where a number should be"),
         ("1 2\n3 4\n", "2 columns are no places"),
         ("", "1 columns are no places"),
         ("3\n1 2 3\n4 5 6\n", "2 of 3 points are there"),
