@@ -570,7 +570,7 @@ _PACKED_ALIKE = (".img", ".mgh", ".nii", ".tt")
 #: Most bytes that are unpacked: a small file can hold any number of zeros.
 MOST_UNPACKED = 1 << 33
 #: Formats of meshers, whose meshes have the points and edges of the shape beside its cells.
-_MESHERS = (".mesh", ".meshb", ".msh")
+_MESHERS = (".med", ".mesh", ".meshb", ".msh")
 
 
 def _unpacked(path: Path, read: Callable[[Path], list[pv.DataSet]]) -> list[pv.DataSet]:
@@ -607,8 +607,8 @@ def _found(
         # As a block it is reduced to its cells of the highest dimension, see
         # :func:`.blocks.one_grid`.
         contents = pv.MultiBlock({"cells of lower dimension": contents})
-    if isinstance(contents, pv.MultiBlock) and EXODUS[0] in _names(contents):
-        contents = _without_sets(contents)
+    if isinstance(contents, pv.MultiBlock):
+        contents = _without_sets(contents, is_fluent=path.suffix.lower() == ".cas")
     if isinstance(contents, pv.PartitionedDataSet):
         data, contents = contents.field_data, pv.MultiBlock(list(contents))
         contents.field_data.update(data)
@@ -619,11 +619,18 @@ def _names(data: pv.MultiBlock) -> list[str]:
     return [str(name) for name in data.keys()]  # noqa: SIM118 - its own loop gives blocks
 
 
-def _without_sets(data: pv.MultiBlock) -> pv.MultiBlock:
-    """Return the elements of a file of Exodus, without the sets of sides and nodes of them."""
-    if not any(block.n_cells for block in blocks.all_blocks(data[EXODUS[0]])):
+def _without_sets(data: pv.MultiBlock, *, is_fluent: bool) -> pv.MultiBlock:
+    """Return the elements of a file of Exodus or Fluent, without sets of their sides and nodes.
+
+    Of a set of sides in a plane VTK's reader of Fluent gives the cells once more.
+    """
+    names = _names(data)
+    chosen = [name for name in names if is_fluent and name.endswith((":fluid", ":solid"))]
+    if EXODUS[0] in names and any(block.n_cells for block in blocks.all_blocks(data[EXODUS[0]])):
+        chosen = [name for name in names if name not in EXODUS[1:]]
+    if not chosen:
         return data
-    kept = pv.MultiBlock({name: data[name] for name in _names(data) if name not in EXODUS[1:]})
+    kept = pv.MultiBlock({name: data[name] for name in chosen})
     for name in data.field_data:
         kept.field_data[name] = data.field_data[name]
     return kept

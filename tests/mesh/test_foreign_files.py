@@ -170,6 +170,9 @@ def test_a_mesh_of_gmsh(tmp_path):
     # The edge of the shape, on which the triangle has a side, is none of the mesh.
     assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
     assert mesh.cell_data.keys() == ["gmsh:geometrical"]
+    path.write_text(GMSH.replace("2 2 1 2", "2 3 1 3"))
+    with pytest.warns(UserWarning, match="gives 2 of the 3 cells that it states"):
+        vizlight.read(path)
 
 
 def test_an_edge_of_a_mesher_that_no_face_has_is_named(tmp_path):
@@ -374,9 +377,9 @@ def test_tracts_that_are_fewer_than_their_header_states(tmp_path):
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("hello\n", "invalid literal"),
+        ("hello\n", "a word stands where a number should be"),
         ("hello world\n", "could not convert string"),
-        ("\0\1\2", "invalid literal"),
+        ("\0\1\2", "a word stands where a number should be"),
         ("1 2\n3 4\n", "2 columns are no places"),
         ("", "1 columns are no places"),
         ("3\n1 2 3\n4 5 6\n", "2 of 3 points are there"),
@@ -493,3 +496,40 @@ def test_what_an_elevation_model_misses_is_nan(tmp_path):
     assert np.isnan(heights[-1, :4]).all()
     np.testing.assert_array_equal(heights[-1, 4:], rows[0, 4:])
     assert str(mesh.field_data["unit"][0]) == "metre"
+
+
+#: Two triangles in a plane, their four sides and the edge between them.
+FLUENT = """(0 "by hand")
+(2 2)
+(10 (0 1 4 1 2))
+(12 (0 1 2 0))
+(13 (0 1 5 0))
+(10 (1 1 4 1 2)
+(
+0 0
+1 0
+1 1
+0 1
+))
+(13 (2 1 4 3 2)
+(
+1 2 1 0
+2 3 1 0
+3 4 2 0
+4 1 2 0
+))
+(13 (3 5 5 2 2)
+(
+1 3 2 1
+))
+(12 (1 1 2 1 1))
+(45 (1 fluid a)())
+(45 (2 wall b)())
+(45 (3 interior c)())
+"""
+
+
+def test_cells_of_fluent_are_read_once(tmp_path):
+    (tmp_path / "a.cas").write_text(FLUENT)
+    mesh = vizlight.read(tmp_path / "a.cas")
+    assert (mesh.n_points, mesh.n_cells) == (4, 2)

@@ -136,3 +136,5 @@ def test_edges_and_points(tmp_path):
     assert read(tmp_path, "OFF\n2 0 0\n0 0 0\n1 0 0\n").n_verts == 2
     mixed = read(tmp_path, "OFF\n3 2 0\n0 0 0\n1 0 0\n1 1 0\n1 1\n3 0 1 2\n")
     assert (mixed.n_verts, mixed.n_cells) == (1, 2)
+    with pytest.warns(UserWarning, match="gives 1 of the 2 faces that it states"):
+        read(tmp_path, "OFF\n3 2 0\n0 0 0\n1 0 0\n1 1 0\n0\n3 0 1 2\n")

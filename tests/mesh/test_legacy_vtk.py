@@ -104,6 +104,16 @@ def test_cells_without_their_number_or_their_types(word, tmp_path):
         vizlight.read(tmp_path / "a.vtk")
 
 
+def test_arrays_that_vtk_skips(tmp_path):
+    mesh = pv.ImageData(dimensions=(3, 2, 1))
+    mesh["a"] = np.arange(6.0)
+    mesh.save(tmp_path / "a.vtk")
+    data = (tmp_path / "a.vtk").read_bytes()
+    (tmp_path / "a.vtk").write_bytes(data.replace(b"LOOKUP_TABLE default\n", b""))
+    with pytest.raises(FileError, match="0 of 1 arrays are there"):
+        vizlight.read(tmp_path / "a.vtk")
+
+
 @pytest.mark.parametrize("binary", [False, True])
 def test_polyhedra_of_legacy_files_have_whole_faces(tmp_path, binary):
     path = tmp_path / "a.vtk"

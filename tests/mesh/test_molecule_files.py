@@ -84,6 +84,11 @@ def test_beads_of_gromacs_are_points_of_residues(tmp_path):
     assert mesh.active_scalars_name == "residue_name"
 
 
+def test_lines_of_gromacs_beyond_its_count(tmp_path):
+    with pytest.warns(UserWarning, match="has 1 lines more than it states"):
+        vizlight.read(written(tmp_path, GRO.replace("\n4\n", "\n3\n"), "a.gro"))
+
+
 def test_bonds_and_charges_are_those_of_tripos(tmp_path):
     mesh = vizlight.read(written(tmp_path, MOL2, "a.mol2"))
     assert mesh.lines.tolist() == [2, 0, 1]

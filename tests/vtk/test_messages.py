@@ -50,6 +50,7 @@ def test_what_pyvista_repeats_is_no_record(caplog):
         (MemoryError(), "it asks for more memory than there is"),
         (OSError(-101, "NetCDF: HDF error"), "NetCDF: HDF error"),
         (ValueError("3 of 4\nrows"), "3 of 4"),
+        (ValueError("could not convert string to float: 'x'"), "should be: 'x'"),
     ],
 )
 def test_errors_of_readers_are_words(error, words):

@@ -255,6 +255,10 @@ def _attach_colors(mesh: pv.PolyData, data: bytes, path: Path) -> None:
     mesh.point_data["color"] = np.rint(np.clip(colors, 0, 255)).astype(np.uint8)
 
 
+#: Header of the elements of gmsh in text.
+_ELEMENTS = re.compile(rb"\n\$Elements\r?\n(\d+)(?:[ \t]+(\d+)[ \t]+\d+[ \t]+\d+)?[ \t]*\r?\n")
+
+
 def _of_meshio(path: Path) -> pv.DataSet:
     """Return a mesh by the first reader of meshio that takes a file.
 
@@ -283,6 +287,10 @@ def _of_meshio(path: Path) -> pv.DataSet:
     if not data.cells:
         raise ValueError("it has no cells")
     content = path.read_bytes()
+    if path.suffix.lower() == ".msh" and (head := _ELEMENTS.search(content)):
+        # Before version 4 their number stands alone, and since then between others.
+        stated = int(head[2] or head[1])
+        file_parts.warn_of_less(path, sum(len(part.data) for part in data.cells), stated, "cells")
     if b"\0" not in content:
         file_parts.warn_of_last_line(path, content)
     data.cell_sets = {}

@@ -69,6 +69,7 @@ def read_off(path: Path) -> pv.PolyData:
         ends.append(len(ids))
         colors.append(row[size + 1 :])
     sizes, corners = np.diff(ends), np.array(ids, dtype=int)
+    file_parts.warn_of_less(path, int(np.count_nonzero(sizes)), faces, "faces")
     mesh.SetPolys(_of_sizes(corners, sizes, sizes > 2))
     mesh.SetLines(_of_sizes(corners, sizes, sizes == 2))
     mesh.SetVerts(_of_sizes(corners, sizes, sizes == 1))

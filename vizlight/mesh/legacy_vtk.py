@@ -43,6 +43,8 @@ _TYPES = re.compile(rb"\n\w+[ \t]+(\d+)[ \t]*\r?\n")
 #: The first word after a number of points or cells, and the number of arrays of a field.
 _FIRST = re.compile(rb"\n\w+[ \t]+\d+\s+(\S+)")
 _FIELD = re.compile(rb"\sFIELD[ \t]+\S+\s+(\d+)(?=\s)")
+#: Headers of arrays with a name.
+_HEADS = re.compile(rb"\n(?:SCALARS|VECTORS|NORMALS|TENSORS|COLOR_SCALARS)[ \t]+(\S+)[ \t]")
 #: Headers of points, and of an array of some components.
 _POINTS = re.compile(rb"\nPOINTS[ \t]+(\d+)[ \t]+(\w+)[ \t]*\r?\n")
 _SCALARS = re.compile(rb"\nSCALARS[ \t]+\S+[ \t]+\w+[ \t]+(\d+)[ \t]*\r?\n")
@@ -269,6 +271,11 @@ def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
     if path.suffix.lower() != ".vtk":
         return ""
     with path.open("rb") as file:
+        with file_parts.mapped(file) as data:
+            names = {match[1] for match in _HEADS.finditer(data)}
+        there = {*mesh.point_data, *mesh.cell_data}
+        if len(there) < len(names):
+            return f"{len(there)} of {len(names)} arrays are there"
         # An empty line ends what VTK says of an array.
         block = file_parts.last(file).replace(b"\r", b"").rpartition(b"METADATA")
         if block[1] and b"\n\n" not in block[2]:

@@ -52,6 +52,8 @@ def of_gro(path: Path) -> pv.PolyData:
         raise ValueError(f"{max(len(lines) - 3, 0)} of {count} atoms and their box are there")
     if (states := len(lines) // (count + 3)) > 1:
         molecules.warn_of_states(path, states)
+    more = sum(1 for line in lines[states * (count + 3) :] if line.strip())
+    file_parts.warn_of_more(path, more, "lines")
     # Decimal points are as far apart as columns are wide.
     points = [i for i, letter in enumerate(atoms[0] if atoms else "") if letter == "."]
     wide = points[1] - points[0] if len(points) > 1 else 1

@@ -34,6 +34,10 @@ def first_line(error: Exception | str) -> str:
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
 
 
+#: What Python and NumPy say of words that are no numbers.
+_NO_NUMBER = re.compile(
+    r"(?:invalid literal for int\(\) with base \d+|could not convert string(?: \S+)? to \w+): (.*)"
+)
 #: Errors by which readers stop where they do not check what they follow: their words are of code.
 _OF_CODE = (
     ArithmeticError, AssertionError, AttributeError, LookupError, RecursionError, TypeError,
@@ -60,6 +64,8 @@ def reason(error: BaseException) -> str:
         return f"its parts do not fit together, by {kind}{text and f': {text}'}"
     if error.__cause__ is not None and "See previous exception" in text:  # of rasterio
         return reason(error.__cause__)
+    if word := _NO_NUMBER.match(text):
+        return f"a word stands where a number should be: {word[1]}"
     return (isinstance(error, OSError) and error.strerror) or text
 
 
