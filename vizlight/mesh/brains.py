@@ -17,8 +17,8 @@ from vizlight.mesh import meaning, series
 from vizlight.mesh.georeference import UNIT
 
 __all__ = [
-    "MEASURES", "SURFACES", "VOLUMES", "hemisphere", "is_freesurfer", "is_pair", "overlay", "read",
-    "tracks_of_tt", "volume",
+    "SURFACES", "VOLUMES", "hemisphere", "is_freesurfer", "is_pair", "overlay", "read",
+    "tracks_of_tt", "volume", "word_and_unit",
 ]  # fmt: skip
 
 #: Name of the array of a volume by the end of the name of its file, where that is not NIfTI.
@@ -40,6 +40,8 @@ MEASURES = {
     "thickness": ("cortical thickness", "mm"), "curv": ("curvature", "1/mm"),
     "area": ("area", "mm2"), "volume": ("volume", "mm3"), "sulc": ("sulcal depth", ""),
 }  # fmt: skip
+#: Words of names that say the side alone.
+_SIDE = re.compile(r"left|right|[lr]h?")
 #: Largest cosine between axes that are at right angles: affines are in float32.
 SQUARE = 1e-5
 #: First bytes of a surface of triangles and of quadrangles, and of numbers for its points.
@@ -73,6 +75,18 @@ def is_freesurfer(path: Path) -> bool:
         return file.read(3) in _FREESURFER
 
 
+def word_and_unit(name: str) -> tuple[str, str]:
+    """Return the word and the unit of an array that FreeSurfer makes, empty for others.
+
+    Parameters
+    ----------
+    name : str
+        Name of the array, with the side or without, such as lh.curv.
+    """
+    words = [word for word in re.split(r"[\W_]+", name.lower()) if not _SIDE.fullmatch(word)]
+    return MEASURES.get(words[0], ("", "")) if len(words) == 1 else ("", "")
+
+
 def hemisphere(surface: pv.DataSet) -> str:
     """Return which hemisphere of the cortex a surface is, left or right; empty for all else.
 
@@ -87,7 +101,7 @@ def hemisphere(surface: pv.DataSet) -> str:
     if not isinstance(surface, pv.PolyData) or surface.n_cells != 2 * surface.n_points - 4:
         return ""
     is_template = surface.n_points in TEMPLATES
-    if not is_template and MEASURES.keys().isdisjoint(surface.point_data.keys()):
+    if not is_template and not any(word_and_unit(name)[0] for name in surface.point_data):
         return ""
     bounds = np.reshape(surface.bounds, (3, 2))
     if any(

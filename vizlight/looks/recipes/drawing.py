@@ -612,7 +612,7 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | 
     The course of a vector has no unit; that of a level stands after its number.
     """
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
-    word, of_brains = brains.MEASURES.get(name, ("", "")) if brains.hemisphere(mesh) else ("", "")
+    word, of_brains = brains.word_and_unit(name) if brains.hemisphere(mesh) else ("", "")
     unit = attributes.get("units", "").strip() or of_brains
     title = attributes.get("long_name") or attributes.get("standard_name") or word
     title = title or ("values" if meaning.is_of_reader(name) else name)
