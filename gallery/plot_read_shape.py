@@ -2,19 +2,22 @@
 What is the shape?
 ==================
 
-The left half of the mean brain of 152 people. Left: PyVista's light. Right: a cream lamp from above
-and weaker blue and brown ones from the right and the left (``vizlight.presets.shape``): each slope
-has a lightness and a tint, which the ball shows at the place of the same slope. How well the normal
-is read in either light is printed below: in a column of print the folds are nearly too fine for it.
+The left half of the mean brain of 152 people. Left: PyVista's light. Right: three coloured lamps
+half way between the eye and the picture plane (``vizlight.presets.shape``): each slope has a
+colour, which the ball shows at the place of the same slope. The light of the sky
+(``vizlight.sky``) darkens the folds. How well the normal is read in either light is printed below:
+in a column of print the folds are nearly too fine for hues.
 """
 
 import pyvista as pv
 
 import vizlight
-from vizlight import Scene, presets, render
+from vizlight import Material, Scene, presets, render
 
 cortex = vizlight.load_example("brain.vti").contour([55.5]).connectivity("largest")
-scene = presets.shape()
+# Some points deep in folds see nothing of the sky: a warning says how many.
+cortex = vizlight.sky(cortex, error=0.05)
+scene = presets.shape().replace(material=Material(ambient=0.3, diffuse=0.7, specular=0))
 
 plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=(1800, 760), border=False)
 plotter.set_background("#10141a", all_renderers=True)
@@ -22,7 +25,7 @@ plain = plotter.add_mesh(cortex, color="white", smooth_shading=True, show_scalar
 plotter.camera = render.camera_on(cortex.bounds, (-1, 0.25, 0.3), aspect=1.2, zoom=1.3)
 plain = Scene.from_plotter(plotter, actor=plain)
 plotter.subplot(0, 1)
-lit = cortex.vizlight.illuminate(scene)
+lit = cortex.vizlight.illuminate(scene, occlusion="sky")
 plotter.vizlight.add_mesh(lit)
 plotter.vizlight.add_key(scene)
 plotter.link_views()

@@ -5,8 +5,7 @@ Light of the sky
 What each point sees of an even sky multiplies its ambient light, so that folds and valleys are
 dark. Above: PyVista with the ambient occlusion of the screen (SSAO), which changes with the camera
 and is lost in a file. Below: ``occlusion="sky"``, a point array with an error of 0.03, in the light
-of ``presets.shape``. How well the normal is read in each of them is printed below: best without the
-sky, whose dark is mixed with that of the lamps.
+of ``presets.shape``. How well the normal is read in each of them is printed below.
 """
 
 import numpy as np

@@ -54,7 +54,7 @@ QUESTIONS = {
         ("near end of a line",), "hemisphere", of_tangents=True, by_hue=True,
     ),
     "shape": Question(
-        "Shape", "Lightness and tint are the normal, as on the ball of the key.",
+        "Shape", "Hue and lightness are the normal, as on the ball of the key.",
         ("the way it faces",), by_hue=True,
     ),
     "value": Question(

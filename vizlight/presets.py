@@ -4,7 +4,7 @@
 ``presets.direction``       which way does the field run? Hue is its direction on the screen
 ``presets.slope``           how steep are lines toward the eye? Dark lines run toward it
 ``presets.heading``         and which end is near? Hue tells it
-``presets.shape``           what is the shape? Lightness and tint are the normal
+``presets.shape``           what is the shape? Hue and lightness are the normal
 ``presets.value``           what is the value? Colours of data read by their bar
 ==========================  ===============================================================
 

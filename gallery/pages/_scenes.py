@@ -42,8 +42,8 @@ SECTIONS = {
         "plot_furry_torus": "Fur at the edge of a shadow, flat and with single fibres standing out",
     },
     "What is the shape?": {
-        "plot_read_shape": "Folds of a brain in gray, and with warm and cold slopes",
-        "plot_sky": "Terrain, brain, coral, part, fibres: gray, and warm and cold with dark folds",
+        "plot_read_shape": "Folds of a brain in gray, and in hues of their slopes under a sky",
+        "plot_sky": "Terrain, brain, coral, part and fibres: in gray, and in hues with dark folds",
         "plot_highlights": "Balls in six rows, with round highlights and some that wrap around",
         "plot_isoluminance": "Solids in bands of equal luminance between black contours",
     },

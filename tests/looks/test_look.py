@@ -13,6 +13,7 @@ from vizlight.files import FileError
 from vizlight.looks.recipes.drawing import titled
 from vizlight.looks.rules import RULES
 from vizlight.mesh import meaning, series
+from vizlight.scene.presets import preset_of
 
 SIZE = (120, 80)
 
@@ -105,7 +106,21 @@ def test_the_data_choose(kind):
     assert look.reason
     assert mesh.array_names == names
     assert str(look).count("\n") == 2 + len(look.notes)
-    assert all(other.array != look.array for other in look.others)
+    assert all(other.array != look.array for other in look.others if other.question != "shape")
+
+
+def test_hues_that_tell_normals_are_for_those_who_ask_for_them():
+    look, asked = (vizlight.look(pv.Sphere(), what, size=SIZE) for what in ("auto", "shape"))
+    assert [other.shell for other in look.others] == ["--for shape"]
+    assert not asked.others
+    assert [preset_of(each.scene) for each in (look, asked)] == [None, "shape"]
+    lit, view = vizlight.illuminate(pv.Sphere(), look.scene), look.scene.view
+    across = lit["Normals"] @ np.cross(view.up, view.direction)
+    left, right = (lit["rgb"][place(across)] for place in (np.argmin, np.argmax))
+    assert lit.points[np.argmax(lit["rgb"].sum(axis=1)), 2] > 0.3
+    assert left[0] > left[2]
+    assert right[0] < right[2]
+    assert asked.figures().shape.median < 5 < look.figures().shape.median < 13
 
 
 def globe(**options):

@@ -138,7 +138,7 @@ def test_a_scan_of_a_body_shows_bones_or_slices_but_no_skin():
     # What was cut out of its scan is an organ.
     organ = vizlight.look(scan((99, 0), *tissue, axes=meaning.ANATOMY))
     assert organ.shown == "isosurface"
-    assert [other.python for other in organ.others] == ["question='value'"]
+    assert [other.python for other in organ.others] == ["question='value'", "question='shape'"]
     bones = vizlight.look(scan((99, -1000), (13, 40), (8, 900), (7, 30)))
     assert "NIFTI = 300" in bones.summary
     assert "bone" in str(bones)

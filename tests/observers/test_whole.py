@@ -287,7 +287,7 @@ def test_a_ball_tells_normals_in_its_own_frame_wherever_the_eye_is():
         plotter.renderer.reset_camera_clipping_range()
         medians.append(plotter.vizlight.legibility(**HOW).shape.median)
         plotter.close()
-    assert max(medians) < 9
+    assert max(medians) < 7
 
 
 def test_what_has_no_key_is_not_read_and_said_so():

@@ -66,18 +66,6 @@ def test_bounds_are_the_largest_light_or_near_it(random):
     assert brightest_tangent(one) == brightest_normal(one) == 1
 
 
-def test_the_light_of_shapes_tells_the_normals_of_a_sphere():
-    ball = pv.Sphere(theta_resolution=60, phi_resolution=60)
-    assert vizlight.legibility(ball, presets.shape()).shape.median < 7
-    ways = unit(np.array([[0, 1, 1], [-1, 0, 1], [1, 0, 1], [0, -1, 1.0]]))
-    lamps = lamps_of(presets.shape())
-    top, left, right, low = sum(np.maximum(ways @ d, 0)[:, np.newaxis] * w for d, w in lamps)
-    # What faces up is brightest, what faces left is warm, and what faces right is cold.
-    assert top @ LUMA > max(light @ LUMA for light in (left, right, low))
-    assert left[0] > 1.1 * left[2]
-    assert right[2] > 1.1 * right[0]
-
-
 def test_hues_have_one_luma_and_a_white_mean():
     for saturation in (0.3, 1.0):
         colors = hues(3, saturation)

@@ -798,7 +798,7 @@ def _others(contents: Contents, case: Case, drawn: str) -> tuple[Other, ...]:
     ]
     if drawn == "isosurface":
         others.insert(0, Other("value", None, "question='value'", "--for value"))
-    is_shape = case.question == "shape" and drawn != "slices"
+    is_shape = case.wishes.question == "shape" and drawn != "slices"
     if not is_shape and contents.flat_axis is None and contents.dimension > 1:
         others.append(Other("shape", None, "question='shape'", "--for shape"))
     if is_whole_earth(map_parts.before_chart(case.data).run()):

@@ -17,7 +17,7 @@ from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
 from vizlight.mesh import georeference, height_grids, meaning, projections, records
 from vizlight.scene.material import Material
-from vizlight.scene.presets import PRESETS
+from vizlight.scene.presets import AMBIENT, PRESETS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -43,6 +43,13 @@ VIEWS: dict[str, Vector] = AXES | {
 }  # fmt: skip
 #: Azimuth and altitude of the sun of maps, in degrees: cartographers' north-west.
 SUN = (315.0, 30.0)
+#: Lamps of a room in the frame of the eye: cream from above, and fainter blue and brown. Of faint
+#: colours that an eye takes for light they leave small errors of the normals that it reads.
+ROOM: Sequence[Keywords] = (
+    {"direction": (-0.34, 1.0, 0.45), "color": (1.0, 0.98, 0.85), "intensity": 0.78},
+    {"direction": (0.73, 0.18, 1.0), "color": (0.5, 0.71, 1.0), "intensity": 0.33},
+    {"direction": (-0.45, -0.23, 1.0), "color": (1.0, 0.71, 0.55), "intensity": 0.33},
+)
 #: Degrees of longitude from which on a map is one of the whole earth.
 GLOBAL = 340.0
 #: Height of letters of numbers around a box, in those of keys.
@@ -61,7 +68,7 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
 
     ``"none"`` is even light, in which colours are those of the map; ``"relief"`` the sun of maps,
     ``"shadow"`` a lamp over the left shoulder, ``"lamp"`` one that follows the eye and leaves
-    colours much as they are.
+    colours much as they are, ``"room"`` three in which a surface looks like one thing.
     """
     if question == "value":
         # Colours of data are read best where a lamp at the eye dims steep places alone, and little.
@@ -84,6 +91,10 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
         lights = [Step("", "vizlight.Light", direction=(-0.6, 0.6, 1.0), follows_view=True)]
         glossy = {"ambient": 0.55, "diffuse": 0.55, "specular": 0.1, "shininess": 20.0}
         material = Step("", "vizlight.Material", **glossy)
+        return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
+    if question == "room":
+        lights = [Step("", "vizlight.Light", **lamp, follows_view=True) for lamp in ROOM]
+        material = Step("", "vizlight.Material", ambient=AMBIENT, diffuse=1 - AMBIENT)
         return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
     if question == "shadow":
         # A shadow is cast by one lamp, where the default of a scene has two.

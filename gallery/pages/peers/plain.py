@@ -117,7 +117,7 @@ def tubes(name, radius, question, figure):
 
 
 def cortex():
-    """Compare the light of shape with smooth shading."""
+    """Compare the light of shape and sky with smooth shading."""
     names, picture = drawn("read_shape")
     mesh, own = names["cortex"], names["plotter"]
     light = read(own, mesh, names["scene"]).shape

@@ -416,14 +416,23 @@ class Case:
 
     def scene(self, camera: Step) -> Step:
         """Return the step that makes the scene of the question."""
-        return self.wishes.scene(self.question, camera)
+        return self.wishes.scene(self._light, camera)
+
+    @property
+    def _light(self) -> str:
+        """The question of the light: lamps of a room where nobody asks for the shape that is shown.
+
+        To an eye that is not told so, hues that tell normals look like data.
+        """
+        is_asked = self.wishes.question != "auto"
+        return self.question if self.question != "shape" or is_asked else "room"
 
     def exposed(self, mesh: Step, camera: Step, question: str = "", **light: object) -> Step:
         """Return the step that makes the scene of a question, exposed for the seen part of a mesh.
 
         A scene that was given is not exposed.
         """
-        scene = self.wishes.scene(question or self.question, camera)
+        scene = self.wishes.scene(question or self._light, camera)
         if self.wishes.make_scene is not None:
             return scene
         exposure = exposure_seen(mesh.run(), scene.run(), camera.run(), light)
