@@ -622,7 +622,8 @@ def _names(data: pv.MultiBlock) -> list[str]:
 def _without_sets(data: pv.MultiBlock, *, is_fluent: bool) -> pv.MultiBlock:
     """Return the elements of a file of Exodus or Fluent, without sets of their sides and nodes.
 
-    Of a set of sides in a plane VTK's reader of Fluent gives the cells once more.
+    Cells of a flat set of sides come twice from VTK's reader of Fluent: in the set, and in the
+    whole.
     """
     names = _names(data)
     chosen = [name for name in names if is_fluent and name.endswith((":fluid", ":solid"))]

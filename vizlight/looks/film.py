@@ -237,8 +237,7 @@ class _Flow:
         move = min(lasts / count, drift.duration / PER_LENGTH)
         ratio = move * count / lasts
         pace = "with it" if ratio > AT_PACE else f"at {ratio:.2g} of its pace"
-        at_rest, every = self.layer.mesh, self.look.drawing.layers
-        rest = [layer for layer in every if layer.mesh is not at_rest]
+        rest = [layer for layer in self.look.drawing.layers if layer is not self.layer]
         ground = replace(fields.with_words(self.look.drawing, f"strokes move {pace}"), layers=rest)
         speed = self.layer.keywords.get("scalars")
 

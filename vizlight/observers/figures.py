@@ -33,8 +33,8 @@ class Figure:
     reason : str
         Why the question is unreadable, empty where it is not. The errors are then those of chance.
     chance : float
-        Result of guessing: of angles and values the median error, of a magnitude the rank
-        correlation, of two sides the share that is told.
+        Result of guessing: the median error of angles and values, the rank correlation of a
+        magnitude, the share of right answers where there are two.
     """
 
     bits: float

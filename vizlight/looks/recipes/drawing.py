@@ -615,6 +615,11 @@ def file_named(mesh: Step) -> str:
     return Path(source).name.partition(".")[0] if isinstance(source, str | Path) else ""
 
 
+def with_file(mesh: Step, title: str) -> str:
+    """Return a title after the name of the file that a step begins with, if it does."""
+    return ", ".join(filter(None, [file_named(mesh), title]))
+
+
 def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | None = None) -> str:
     """Return the name of an array with its date and its unit, where the mesh says them.
 

@@ -19,8 +19,8 @@ from vizlight.looks.recipes.drawing import (
     Drawing,
     Layer,
     colors_of_kinds,
-    file_named,
     titled_length,
+    with_file,
 )
 from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import Step
@@ -83,8 +83,8 @@ def lines(case: Case) -> Drawing:
         shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
         layer = Layer(_by_direction(lit), {**shown, "line_width": width})
         table = Step("", "vizlight.maps.directions", meaning.ways(mesh.run()))
-        title = ", ".join(filter(None, [file_named(mesh), "direction"]))
-        key: Keywords = {"question": "value", "title": title, "cmap": table}
+        key: Keywords = {"question": "value", "cmap": table}
+        key["title"] = with_file(mesh, "direction")
         words = "lines by their direction"
         return Drawing([layer], camera, scene, lit, words, [key], kind=mesh)
     if case.question == "value":
@@ -156,11 +156,7 @@ def backbone(case: Case) -> Drawing:
     across = eye_across(solid.run())
     chains = replace(case, data=solid, contents=Contents(solid.run()), wishes=wishes)
     drawing = surfaces.values(replace(chains, viewpoint=across))
-    named = file_named(case.data)
-    keys = [
-        key | {"title": ", ".join(filter(None, [named, str(key["title"])]))} | bar
-        for key in drawing.keys
-    ]
+    keys = [key | {"title": with_file(case.data, str(key["title"]))} | bar for key in drawing.keys]
     return replace(drawing, words=f"backbone in the colours of {name}", keys=keys)
 
 

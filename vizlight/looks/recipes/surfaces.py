@@ -90,7 +90,9 @@ def values(case: Case) -> Drawing:
         words = f"{bands['long_name']} as red, green and blue"
     notes = [note] if note else []
     kinds = kinds_of(mesh.run(), array.name) if array.role == "kinds" else ()
-    shown_kinds = kinds_of(mesh.run(), array.name, MOST_IN_KEY) if kinds else ()
+    shown_kinds = kinds
+    if len(kinds) > MOST_IN_KEY:
+        shown_kinds = kinds_of(mesh.run(), array.name, MOST_IN_KEY)
     if rest := len(kinds) - len(shown_kinds):
         notes = [f"{array.name} has {len(kinds)} kinds: the {rest} smallest are grey"]
         keys = [keys[0] | {"title": f"{keys[0]['title']}; grey: {rest} small ones"}]
