@@ -5,6 +5,7 @@ VTK's reader makes numbers up that are missing, and ends the process at numbers 
 
 from __future__ import annotations
 
+import collections
 import itertools
 import mmap
 import re
@@ -26,6 +27,8 @@ _HEAD = 4096
 #: Version in the first line, and words before cells that are rows until version 5.
 _VERSION = re.compile(rb"# vtk DataFile Version\s+(\d+)\.\d")
 _CELLS = (b"VERTICES ", b"LINES ", b"POLYGONS ", b"TRIANGLE_STRIPS ", b"CELLS ")
+#: Words before lists of cells, of their offsets, and of their types.
+_LISTS = re.compile(rb"\n(%s)" % b"|".join([*_CELLS, b"OFFSETS ", b"CELL_TYPES "]))
 #: Numbers of cells and of all numbers of them.
 _COUNTS = re.compile(rb"\s\w+[ \t]+(-?\d+)[ \t]+(-?\d+)[ \t]*\r?\n")
 #: The first word after numbers.
@@ -91,7 +94,7 @@ def missing_part(file: BinaryIO) -> str:
         )
         wide = (_components(data, at) for at in file_parts.places(data, b"\nSCALARS "))
         ends = (_after_points(data, at, is_text) for at in file_parts.places(data, b"\nPOINTS "))
-        others = (_headless(data),)
+        others = map(_headless, [data])
         return next(
             filter(None, itertools.chain(fields, ends, cells, types, named, wide, others)), ""
         )
@@ -102,10 +105,7 @@ def _headless(data: mmap.mmap | bytes) -> str:
 
     Since version 5 each list of cells has the word OFFSETS; cells of a grid have types.
     """
-    counts = {
-        word: sum(1 for _ in file_parts.places(data, b"\n" + word))
-        for word in (*_CELLS, b"OFFSETS ", b"CELL_TYPES ")
-    }
+    counts = collections.Counter(match[1] for match in _LISTS.finditer(data))
     if counts[b"OFFSETS "] > sum(counts[word] for word in _CELLS):
         return "a list of cells has no number of them"
     if counts[b"CELLS "] != counts[b"CELL_TYPES "] and data.find(b" UNSTRUCTURED_GRID") >= 0:

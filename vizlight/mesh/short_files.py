@@ -159,6 +159,10 @@ def _stl_count(head: bytes) -> int:
     return int.from_bytes(head[_STL_HEAD - 4 : _STL_HEAD], "little")
 
 
+#: Word after each triangle of a text, and number of bytes of it that are looked at at once.
+_END_OF_FACET, _STL_BLOCK = b"endfacet", 1 << 20
+
+
 def triangles(path: Path, /) -> int:
     """Return the number of triangles of an STL file, of which VTK leaves out those without area.
 
@@ -167,9 +171,16 @@ def triangles(path: Path, /) -> int:
     path : pathlib.Path
     """
     with path.open("rb") as file:
-        head = file.read(_STL_HEAD)
-        text = head + file.read() if _is_text_of_stl(head) else b""
-    return text.lower().count(b"endfacet") if text else _stl_count(head)
+        block = file.read(_STL_HEAD)
+        if not _is_text_of_stl(block):
+            return _stl_count(block)
+        count, rest = 0, b""
+        while block:
+            # A word may begin at the end of the block before.
+            text = rest + block.lower()
+            count, rest = count + text.count(_END_OF_FACET), text[1 - len(_END_OF_FACET) :]
+            block = file.read(_STL_BLOCK)
+    return count
 
 
 #: Bytes of a record of LAS, and of one that stands after the points.
