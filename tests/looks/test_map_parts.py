@@ -284,6 +284,17 @@ def test_a_relief_of_the_whole_earth_has_a_sky_where_it_has_few_points(monkeypat
     assert "occlusion" not in vizlight.look(world, size=SIZE).drawing.lit.keywords
 
 
+def test_strokes_of_a_map_have_their_course():
+    grid = chart(20, 10, 0, 55, name="warmth")
+    grid["wind"] = np.tile([10.0, 10.0, 0.0], (grid.n_points, 1))
+    layers = vizlight.look(grid, "direction", size=SIZE).drawing.layers
+    strokes = next(
+        mesh for mesh in (layer.mesh.run() for layer in layers) if "age" in mesh.array_names
+    )
+    start, end = strokes.get_cell(0).points[[0, -1]]
+    assert np.degrees(np.arctan2(*(end - start)[1::-1])) == pytest.approx(45, abs=0.1)
+
+
 @pytest.mark.slow
 def test_a_relief_of_the_whole_earth_is_bent_once_it_is_lit(tmp_path):
     earth = chart(348, 168, west=-174.0, south=-84.0, name="elevation")

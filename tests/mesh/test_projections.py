@@ -32,8 +32,23 @@ def test_which_map_has_which_projection(bounds, kind):
 
 
 @pytest.mark.parametrize(
+    ("bounds", "kind"),
+    {(0, 20, 55, 65): "merc", (0, 20, -65, -55): "merc", (-10, 40, 35, 70): "lcc"}.items(),
+)
+def test_north_is_up_on_a_map_whose_scales_differ_little(bounds, kind):
+    text = projections.suited(bounds, north_up=True)
+    assert text.startswith(f"+proj={kind} ")
+    plane, earth = projections.of_text(text), places(bounds)
+    courses = plane.forward(earth + np.array([0, 1e-5])) - plane.forward(earth)
+    leans = np.degrees(np.abs(np.arctan2(courses[:, 0], courses[:, 1])))
+    assert leans.max() < 1e-3 if kind == "merc" else leans.max() > 10
+
+
+@pytest.mark.parametrize(
     ("text", "bounds"),
     [
+        (projections.suited((0, 20, 55, 65), north_up=True), (0, 20, 55, 65)),
+        ("+proj=merc +lon_0=15 +R=6371000", (-165, 195, -80, 80)),
         *((projections.suited(bounds), bounds) for bounds, kind in SUITED.items() if kind),
         (ROTATED, (-180, 180, -89, 89)),
         (projections.around(20.0), (-159.9, 199.9, -89.9, 89.9)),

@@ -239,10 +239,13 @@ def charted(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Conte
     is_lit_first = wishes.question in ("auto", "relief") and globes.middle_of(mesh) is not None
     of_rows = (is_relief or wishes.question in RELIEFS) and not is_lit_first
     straight = of_rows or mesh.n_points > MOST_BENT
-    text = charts.suited(mesh, straight=straight)
+    # A stroke says its course where north is up on the whole map.
+    flows = contents.first("vectors") is not None
+    text = charts.suited(mesh, straight=straight, north_up=flows)
     if not text:
         return step, contents
-    chart = Step("chart", "vizlight.cartography.chart", step, *([text] if straight else []))
+    own = [text] if text != charts.suited(mesh) else []
+    chart = Step("chart", "vizlight.cartography.chart", step, *own)
     if charts.is_torn(chart.run()):
         return step, contents
     return chart, replace(contents, mesh=chart.run())

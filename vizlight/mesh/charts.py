@@ -99,7 +99,7 @@ def chart(mesh: pv.DataSet, /, projection: str | None = None) -> pv.DataSet:
     return flat
 
 
-def suited(mesh: pv.DataSet, *, straight: bool = False) -> str:
+def suited(mesh: pv.DataSet, *, straight: bool = False, north_up: bool = False) -> str:
     """Return the text of the projection in which a map in degrees is best drawn, empty for none.
 
     Parameters
@@ -108,12 +108,14 @@ def suited(mesh: pv.DataSet, *, straight: bool = False) -> str:
         Map in degrees.
     straight : bool, default: False
         Whether rows and columns must stay straight.
+    north_up : bool, default: False
+        Whether a course is to be the same angle everywhere on the map, where scales allow it.
     """
     if PROJECTION in mesh.field_data and not straight:
         return str(mesh.field_data[PROJECTION][0])
     if not straight and (middle := globes.middle_of(mesh)) is not None:
         return projections.around(middle)
-    return projections.suited(mesh.bounds, straight=straight)
+    return projections.suited(mesh.bounds, straight=straight, north_up=north_up)
 
 
 def is_torn(mesh: pv.DataSet) -> bool:

@@ -37,7 +37,7 @@ _KEYWORDS = {
 #: Attributes that write a projection out.
 _WRITTEN = ("crs_wkt", "spatial_ref", "proj4", "proj4_params", "proj4text")
 #: Keywords of the projections on the sphere that need no PROJ.
-_ON_SPHERE = {"lcc", "stere", "ob_tran", "eqc", "eqearth"}
+_ON_SPHERE = {"lcc", "stere", "ob_tran", "eqc", "eqearth", "merc"}
 #: Their keywords with numbers, and those that say what is usual. With any other PROJ is needed.
 _OF_SPHERE = {"R", "lat_0", "lat_1", "lat_2", "lat_ts", "lon_0", "o_lat_p", "o_lon_p"}
 _USUAL = {"no_defs", "type=crs", "units=m", "wktext", "x_0=0", "y_0=0"}
@@ -46,6 +46,8 @@ _INNER = 1 / 6
 #: Extents in degrees: of a map that is taken for flat, of one that a cone can hold, and of one
 #: around the earth; latitudes of a map's middle, and of its end, from which on it is drawn so.
 SMALL, WIDE, AROUND, MIDDLE, POLAR = 5.0, 185.0, 340.0, 25.0, 15.0
+#: Largest ratio of the scales of a map on which north is up everywhere.
+MOST_SCALES = 1.5
 #: Coefficients of the Equal Earth projection, and steps of its inverse.
 EQUAL_EARTH, NEWTON = np.array([1.340264, -0.081106, 0.000893, 0.003796]), 12
 
@@ -90,6 +92,8 @@ def of_text(text: str) -> Projection | None:
     radius = numbers.get("R", RADIUS)
     if kind == "eqc":
         return _plane(middle, math.cos(math.radians(numbers["lat_ts"])), radius)
+    if kind == "merc":
+        return _cylinder(middle[0], math.cos(math.radians(numbers.get("lat_ts", 0.0))), radius)
     if kind == "eqearth":
         return _equal_earth(middle[0], radius)
     if kind == "ob_tran" and words.get("o_proj") == "eqc":
@@ -143,6 +147,24 @@ def _plane(middle: tuple[float, float], narrow: float, radius: float) -> Project
         return scale * (_around(np.radians(places), middle[0]) - middle)
 
     return Projection(forward, lambda places: np.degrees(places / scale + middle))
+
+
+def _cylinder(middle: float, narrow: float, radius: float) -> Projection:
+    """Return Mercator's projection; ``narrow`` is the cosine of the latitude of true scale.
+
+    Snyder, Map Projections: A Working Manual (1987), equations 7-1, 7-2 and 7-4.
+    """
+    scale = radius * narrow
+
+    def forward(places: Array) -> Array:
+        lon, lat = _around(np.radians(places), middle).T
+        return scale * np.column_stack([lon - middle, np.arcsinh(np.tan(lat))])
+
+    def inverse(places: Array) -> Array:
+        x, y = places.T / scale
+        return np.asarray(np.degrees(np.column_stack([x + middle, np.arctan(np.sinh(y))])))
+
+    return Projection(forward, inverse)
 
 
 def _around(angles: Array, middle: float) -> Array:
@@ -324,11 +346,12 @@ def around(lon: float) -> str:
     return f"+proj=eqearth +lon_0={lon:.9g} +R={RADIUS}"
 
 
-def suited(bounds: Sequence[float], *, straight: bool = False) -> str:
+def suited(bounds: Sequence[float], *, straight: bool = False, north_up: bool = False) -> str:
     """Return the text of the projection that suits a map in degrees, empty for none.
 
     A small map is equirectangular about its middle. A larger one of the middle latitudes is
-    Lambert's conformal cone, and one around a pole stereographic.
+    Lambert's conformal cone, or Mercator's where north is to be up and scales differ little, and
+    one around a pole is stereographic.
 
     Parameters
     ----------
@@ -336,6 +359,8 @@ def suited(bounds: Sequence[float], *, straight: bool = False) -> str:
         West, east, south and north in degrees.
     straight : bool, default: False
         Whether rows and columns must stay straight.
+    north_up : bool, default: False
+        Whether a course is to be the same angle everywhere on the map.
     """
     west, east, south, north = bounds[:4]
     lon, lat = (west + east) / 2, (south + north) / 2
@@ -346,6 +371,9 @@ def suited(bounds: Sequence[float], *, straight: bool = False) -> str:
         return ""
     if straight or max(wide * math.cos(math.radians(lat)), north - south) < SMALL:
         return f"+proj=eqc +lat_ts={lat:.6g} +lat_0={lat:.6g} +lon_0={lon:.6g} +R={RADIUS}"
+    scales = [1 / max(math.cos(math.radians(row)), 1e-6) for row in (south, north)]
+    if north_up and south * north > 0 and max(scales) <= MOST_SCALES * min(scales):
+        return f"+proj=merc +lat_ts={lat:.6g} +lon_0={lon:.6g} +R={RADIUS}"
     # A cone holds no place beyond the equator that is as far as the pole.
     if south < -POLAR < POLAR < north or max(-south, north) < 0:
         return ""
