@@ -48,6 +48,16 @@ def test_the_key_stands_in_a_margin_and_the_data_in_the_rest(size):
     assert (np.abs(plate - lightest).max(axis=2) <= 3).any()
 
 
+def test_a_title_alone_leaves_the_data_the_whole_width():
+    table = vizlight.maps.kinds({0: " "})
+    seen, _ = picture(question="value", cmap=table, title="Cow", lying=True)
+    assert (seen[100] > 60).all()
+    assert (seen[-1] > 60).all()
+    # Above it the title is on the ground of the picture.
+    band = seen[: int(margins.band_share(SIZE) * SIZE[1]) - 1]
+    assert np.median(band) == 0 < band.max()
+
+
 def test_a_wide_word_above_a_bar_stays_in_the_picture():
     mesh = pv.Sphere()
     mesh["Wwwmmmmwww"] = mesh.points[:, 2]

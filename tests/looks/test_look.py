@@ -114,6 +114,10 @@ def test_hues_that_tell_normals_are_for_those_who_ask_for_them():
     assert [other.shell for other in look.others] == ["--for shape"]
     assert not asked.others
     assert [preset_of(each.scene) for each in (look, asked)] == [None, "shape"]
+    # Nobody needs to be told how things look in a room: there is a title alone.
+    keys = [look.drawing.keys[0], asked.drawing.keys[0]]
+    assert [key.get("question") for key in keys] == ["value", None]
+    assert look.wishes.room[0] < look.drawing.camera.keywords["aspect"] * look.wishes.room[1]
     lit, view = vizlight.illuminate(pv.Sphere(), look.scene), look.scene.view
     across = lit["Normals"] @ np.cross(view.up, view.direction)
     left, right = (lit["rgb"][place(across)] for place in (np.argmin, np.argmax))

@@ -88,7 +88,7 @@ class Margin:
         """Add a key below the others; a bar lies below the data as long as it is the only key."""
         self._keys.append(MarginKey(mesh, size, self._ink, lying=lying))
         for key in self._keys:
-            key.lies = lying and len(self._keys) == 1
+            key.lies = lying and len(self._keys) == 1 and bool(key.size)
         for part in self._keys[-1].props:
             self._strip.AddViewProp(part)
         self._pixels = (0, 0)
@@ -113,6 +113,7 @@ class Margin:
             beside = share_x < 1
             strip = (split[0], bottom, right, head) if beside else (left, bottom, right, split[1])
             self._strip.SetViewport(*strip)
+            self._strip.SetDraw(strip[3] > strip[1])
             self._band.SetViewport(left, head, right, top)
             self._band.SetDraw(bool(title))
             room = (strip[2] - strip[0]) * wide, (strip[3] - strip[1]) * high
@@ -121,7 +122,7 @@ class Margin:
             elif beside and len(self._keys) == 1 and self._keys[0].is_bar:
                 rows = _box_of(renderer, data=True)[[1, 3]]
                 self._beside(room, min(width, height), rows)
-            else:
+            elif self._strip.GetDraw():
                 self._stack(room, min(width, height), beside=beside)
         self._entitle(renderer, title, (width, height))
         _, bottom, end, upper = self._strip.GetViewport()
@@ -265,7 +266,7 @@ class MarginKey:
     """
 
     def __init__(self, mesh: pv.PolyData, size: float, ink: Color, *, lying: bool) -> None:
-        self.size, self.lies = size, lying
+        self.lies = lying
         self._mesh = mesh.copy()
         self._flat = np.array(mesh.points, dtype=np.float64)
         # A swatch before a bar is a part of its length.
@@ -296,6 +297,8 @@ class MarginKey:
         #: Kinds without names have no more than a title.
         self._is_title = bool(self._marks) and not any(word.strip() for _, word in self._marks)
         picture.SetVisibility(not self._is_title)
+        #: Width of a disc, as a share of the shorter side of the picture.
+        self.size = 0.0 if self._is_title else size
         self._heading = _text("", ink)
         self._heading.GetTextProperty().SetLineSpacing(1.3)
         self._labels = [_text(word, ink) for _, word in self._marks]
@@ -460,7 +463,7 @@ def data_share(
     size : (int, int)
         Width and height in pixels.
     key : float
-        Width of a key, as a share of the shorter side.
+        Width of a key, as a share of the shorter side, 0 for none.
     titled : bool, default: True
         Whether a title stands above the data.
     lying : bool, default: False
@@ -468,8 +471,10 @@ def data_share(
     """
     width, height = size
     tall = 1 - titled * band_share(size)
-    if lying:
+    if lying and key:
         return 1.0, tall - (BAR_HIGH + 1.5) * LETTERS * min(size) / height
+    if not key:
+        return 1.0, tall
     strip = (key + 2 * MARGIN) * min(width, height)
     # Numbers of a bar need as much room as the key.
     strip = min(0.95 * strip, 0.5 * max(width, height))

@@ -316,7 +316,8 @@ class Look:
     def figures(self) -> Legibility:
         """Return how much a reader reads back from the picture: :func:`vizlight.legibility`.
 
-        Figures of light are left out where no key of the picture explains its light.
+        Figures of light are left out where no key of the picture explains its light, but for the
+        lamps of a room, in which everybody has seen things.
         """
         plotter = self.plotter()
         try:
@@ -329,7 +330,7 @@ class Look:
     def _unexplained(self) -> tuple[str, ...]:
         """Questions of light that no key of the picture explains."""
         has_key = any(key.get("question") != "value" for key in self.drawing.keys)
-        return () if has_key else OF_LIGHT
+        return () if has_key or self.question == "shape" else OF_LIGHT
 
     def __str__(self) -> str:
         others = "; ".join(other.python for other in self.others) or "nothing else"

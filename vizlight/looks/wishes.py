@@ -205,8 +205,10 @@ class Wishes:
         view = Step("", "vizlight.View", direction=(*toward, *(0.0,) * (n - len(toward))))
         return (self.make_scene or plain_scene)("none given", view, camera, n)
 
-    def camera(self, mesh: object, eye: Viewpoint, *, boxed: bool = False) -> Step:
-        """Return the step that sets the camera on a mesh, with room for numbers around a box."""
+    def camera(
+        self, mesh: object, eye: Viewpoint, *, boxed: bool = False, keyed: bool = True
+    ) -> Step:
+        """Return the step that sets the camera on a mesh, with room for numbers and for a key."""
         up, zoom = self.eye.get("up"), self.eye.get("zoom", 1.0)
         fixed = self.frame or self.fixed_camera()
         if fixed is not None:
@@ -224,7 +226,7 @@ class Wishes:
             keywords["parallel"] = True
         if zoom != 1:
             keywords["zoom"] = zoom
-        width, height = self.room
+        width, height = self.room if keyed else self._room(0.0)
         aspect = round(width / height, 4)
         step = Step("camera", "render.camera_on", mesh, toward, **keywords, aspect=aspect)
         if boxed:
@@ -241,9 +243,12 @@ class Wishes:
     @property
     def room(self) -> tuple[float, float]:
         """Width and height of the place for data in the picture, in pixels."""
+        return self._room(KEY_SIZE)
+
+    def _room(self, key: float) -> tuple[float, float]:
         share = (1.0, 1.0)
         if self.picture.get("key", True):
-            share = data_share(self.size, KEY_SIZE, lying=self.wide)
+            share = data_share(self.size, key, lying=self.wide)
         return self.size[0] * share[0], self.size[1] * share[1]
 
     def fixed_camera(self) -> Step | None:

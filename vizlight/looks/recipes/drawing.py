@@ -412,20 +412,25 @@ class Case:
             mesh = map_parts.ball()
         elif self.box is not None:
             mesh, boxed = self.box, True
-        return self.wishes.camera(mesh, eye, boxed=boxed)
+        return self.wishes.camera(mesh, eye, boxed=boxed, keyed=not self.in_room)
 
     def scene(self, camera: Step) -> Step:
         """Return the step that makes the scene of the question."""
         return self.wishes.scene(self._light, camera)
 
     @property
-    def _light(self) -> str:
-        """The question of the light: lamps of a room where nobody asks for the shape that is shown.
+    def in_room(self) -> bool:
+        """Whether the lamps are those of a room: where nobody asks for the shape that is shown.
 
         To an eye that is not told so, hues that tell normals look like data.
         """
-        is_asked = self.wishes.question != "auto"
-        return self.question if self.question != "shape" or is_asked else "room"
+        wishes = self.wishes
+        return self.question == "shape" and wishes.question == "auto" and wishes.make_scene is None
+
+    @property
+    def _light(self) -> str:
+        """The question of the light."""
+        return "room" if self.in_room else self.question
 
     def exposed(self, mesh: Step, camera: Step, question: str = "", **light: object) -> Step:
         """Return the step that makes the scene of a question, exposed for the seen part of a mesh.

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 #: Colour of what is seen face on and has no data, and most cells whose edges are drawn on it.
 GREY, MOST_WITH_EDGES = "#9a9a9a", 5000
+#: Key of a kind without a name, which is its title alone.
+TITLE_ALONE: Keywords = {"question": "value", "cmap": Step("", "vizlight.maps.kinds", {0: " "})}
 
 
 def values(case: Case) -> Drawing:
@@ -98,10 +100,8 @@ def values(case: Case) -> Drawing:
         keys = [keys[0] | {"title": f"{keys[0]['title']}; grey: {rest} small ones"}]
     elif (count := len(kinds)) > MOST_IN_KEY:
         notes = [f"{array.name} has {count} kinds: colours repeat, and have no key"]
-        # A key of a kind without a name is its title alone.
-        table = Step("", "vizlight.maps.kinds", {0: " "})
         title = f"{keys[0]['title']}; {count} kinds"
-        keys = [keys[0] | {"cmap": table, "title": title}]
+        keys = [keys[0] | TITLE_ALONE | {"title": title}]
     if sides is None:
         layers = [Layer(mesh, shown), *edges.edges(camera)]
     else:
@@ -123,9 +123,10 @@ def surface(case: Case) -> Drawing:
     name = case.wishes.part.get("contour")
     words = f"isosurface of {name}" if name else "surface"
     drawn = {"scene": scene, **case.wishes.drawn(light)}
-    key: Keywords = {"scene": scene}
+    # A room needs no key: everybody has seen things in one.
+    key: Keywords = TITLE_ALONE if case.in_room else {"scene": scene}
     if name and case.wishes.part.get("level") is not None:
-        key["title"] = titled(mesh.run(), name, level=case.wishes.part["level"])
+        key = key | {"title": titled(mesh.run(), name, level=case.wishes.part["level"])}
     layers = [Layer(mesh, drawn), *case.edges(camera)]
     return Drawing(layers, camera, scene, lit, words, [key], kind=mesh)
 
