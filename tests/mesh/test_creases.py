@@ -26,6 +26,22 @@ def test_creases_of_a_box_are_its_edges_and_a_ball_has_none():
     assert not files.creases(twice).n_cells
 
 
+def test_a_strip_with_one_side_has_no_crease_where_its_faces_turn_over():
+    turn, across = np.meshgrid(np.arange(60) * np.pi / 30, [-0.3, 0, 0.3], indexing="ij")
+    far = 1 + across * np.cos(turn / 2)
+    rows = [far * np.cos(turn), far * np.sin(turn), across * np.sin(turn / 2)]
+    points = np.stack(rows, axis=-1).reshape(-1, 3)
+    here = np.arange(180).reshape(60, 3)
+    # The end is joined to the start upside down.
+    there = np.vstack([here[1:], here[:1, ::-1]])
+    faces = np.stack([here[:, :-1], there[:, :-1], there[:, 1:], here[:, 1:]], axis=-1)
+    strip = pv.PolyData.from_regular_faces(points, faces.reshape(-1, 4))
+    assert not files.creases(strip).n_cells
+    bent = strip.copy()
+    bent.points[30 * 3 : 31 * 3] *= 0.8
+    assert files.creases(bent).n_cells == 2 * 3
+
+
 def test_edges_that_connect_to_no_length_are_roughness():
     ground = pv.Plane(i_resolution=40, j_resolution=40).triangulate()
     points = ground.points.copy()

@@ -8,7 +8,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._types import Indices
 from vizlight.vtk.cells import check_whole, connectivity
-from vizlight.vtk.corners import SHARP
+from vizlight.vtk.corners import SHARP, sharp_edges
 from vizlight.vtk.memory import once
 from vizlight.vtk.normals import creases as share_of_creases
 
@@ -58,18 +58,11 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
 def _creases(surface: pv.PolyData, *, carried: bool) -> pv.PolyData:
     if not share_of_creases(surface, has_normals=carried):
         return pv.PolyData()
-    if not _are_wound_alike(surface):
-        # VTK takes the edge between a face and one wound the other way for a crease, and winds the
-        # wrong faces where there are polylines too.
-        surface = pv.PolyData(surface.points, surface.faces).compute_normals(
-            point_normals=False, split_vertices=False, consistent_normals=True
-        )
-    edges = surface.extract_feature_edges(
-        SHARP, boundary_edges=False, non_manifold_edges=False, manifold_edges=False
-    )
-    if not edges.n_cells:
-        # Faces that are there twice have no edge between two alone.
+    ids, ends = connectivity(surface.GetPolys())
+    pairs = sharp_edges(surface.points, ids, ends, SHARP)
+    if not len(pairs):
         return pv.PolyData()
+    edges = pv.PolyData(surface.points, lines=np.insert(pairs, 0, 2, axis=1).ravel()).clean()
     edges = edges.connectivity("all")
     part: Indices = np.asarray(edges.point_data["RegionId"])
     low, high = np.full((2, part.max() + 1, 3), [[[np.inf]], [[-np.inf]]])
@@ -81,12 +74,3 @@ def _creases(surface: pv.PolyData, *, carried: bool) -> pv.PolyData:
     lines = np.insert(ends, 0, 2, axis=1)
     kept: pv.PolyData = pv.PolyData(edges.points, lines=lines.ravel()).clean()
     return kept
-
-
-def _are_wound_alike(surface: pv.PolyData) -> bool:
-    """Return whether no two faces run along an edge the same way."""
-    ids, ends = connectivity(surface.GetPolys())
-    ahead = np.roll(ids, -1)
-    ahead[ends[1:] - 1] = ids[ends[:-1]]
-    ways = ids.astype(np.int64) * surface.n_points + ahead
-    return len(np.unique(ways)) == len(ways)

@@ -601,7 +601,7 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
 
 
 #: Names of degrees Celsius, in lower case and in the singular.
-_CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius"}
+_CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius", "deg c"}
 #: Symbols of units that are written out, and of their prefixes.
 _PREFIXES = {"": "", "kilo": "k", "hecto": "h", "centi": "c", "milli": "m"}
 _SYMBOLS = {"meter": "m", "metre": "m", "second": "s", "gram": "g", "pascal": "Pa", "kelvin": "K"}

@@ -245,11 +245,8 @@ def split_faces(
         return np.ones(len(a), dtype=np.bool_) if lone is None else lone[a] & lone[b]
 
     alike = True
-    for members, this, other, a, b, against in _neighbours(len(points), ids, ends, twins):
-        # The normal of one of two faces that are wound against each other is turned to compare
-        # them.
-        cosine = np.einsum("ij,ij->i", unit[a], unit[b])
-        smooth = np.where(against, cosine, -cosine) > least
+    for members, this, other, a, b, against, _ in _neighbours(len(points), ids, ends, twins):
+        smooth = _cosines(unit, a, b, against) > least
         alike = alike and bool(against[sided(a, b)].all())
         # Both corners of a pair are at the same point, so that each point is split by itself.
         a, b = this[smooth], other[smooth]
@@ -265,7 +262,7 @@ def split_faces(
     turned = np.zeros(count, dtype=np.bool_)
     if not alike:
         edges = []
-        for _, _, _, a, b, against in _neighbours(len(points), ids, ends, twins):
+        for _, _, _, a, b, against, _ in _neighbours(len(points), ids, ends, twins):
             # Each pair is met at both ends of its edge.
             met_once = (a < b) & sided(a, b)
             # The other side of a face has its number beyond those of all faces.
@@ -277,13 +274,40 @@ def split_faces(
     return *numbered(root, ids, len(points)), turned
 
 
+def sharp_edges(points: Raw, ids: Indices, ends: Indices, angle: float) -> Indices:
+    """Return both points of each edge that is sharp, of two faces that may be wound otherwise.
+
+    Parameters
+    ----------
+    points, ids, ends, angle
+        As for :func:`split_faces`.
+    """
+    unit = _face_normals(points, ids, ends)
+    least = np.cos(np.radians(angle + BEYOND))
+    edges = [np.empty((0, 2), dtype=np.intp)]
+    for members, this, _, a, b, against, toward in _neighbours(len(points), ids, ends, None):
+        corner = ids[members[this]]
+        # Each edge is met at both of its points.
+        sharp = (_cosines(unit, a, b, against) <= least) & (corner < toward)
+        edges.append(np.column_stack([corner, toward])[sharp])
+    return np.concatenate(edges)
+
+
+def _cosines(unit: Array, a: Indices, b: Indices, against: Bools) -> Array:
+    """Return the cosine of the angle by which the normal turns from one face to the next."""
+    cosine: Array = np.einsum("ij,ij->i", unit[a], unit[b])
+    # The normal of one of two faces that are wound against each other is turned to compare them.
+    return np.where(against, cosine, -cosine)
+
+
 def _neighbours(
     count: int, ids: Indices, ends: Indices, twins: Indices | None
-) -> Iterator[tuple[Indices, Indices, Indices, Indices, Indices, Bools]]:
+) -> Iterator[tuple[Indices, Indices, Indices, Indices, Indices, Bools, Indices]]:
     """Yield the corners of some points, and pairs of faces that an edge at these joins.
 
-    Places of the two faces' corners per pair, the two faces, and whether these are wound alike. By
-    ranges of points: a sort of all edges at once would take more memory.
+    Places of the two faces' corners per pair, the two faces, whether these are wound alike, and the
+    point at the other end of their edge. By ranges of points: a sort of all edges at once would
+    take more memory.
     """
     sizes = np.diff(ends)
     size = int(sizes[0]) if len(sizes) and sizes.min() == sizes.max() else 0
@@ -312,7 +336,7 @@ def _neighbours(
         a, b = np.where(ahead, a, a - len(place)), np.where(onward, b, b - len(place))
         # Faces that are wound alike run along their common edge against each other.
         against = ahead != onward
-        yield place, a, b, face[a], face[b], against
+        yield place, a, b, face[a], face[b], against, toward[rows[pair]]
 
 
 def _face_normals(points: Raw, ids: Indices, ends: Indices) -> Array:

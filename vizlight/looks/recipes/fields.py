@@ -49,7 +49,7 @@ LEAST_SPACING, LEAST_PLACE = 7.5, 2.2
 #: Multiple of these from which no picture need be read back before it is chosen.
 CLEAR = 2.0
 #: Length of a stroke in distances between strokes.
-LONG = 3.5
+LONG = 4.5
 #: Step of lines in distances between strokes, and in cells where these are no smaller.
 STEP, FINEST = 0.125, 0.3
 #: Width of the head of a stroke as a share of its length, and its least and largest one in least
