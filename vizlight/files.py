@@ -158,8 +158,8 @@ def read(
         an integer and no time of a step. Default: the last step.
     overlay : path or sequence of paths, optional
         Files with values for the points, which become point arrays of their names: GIFTI (.gii),
-        FreeSurfer's (lh.curv, .annot, .mgh) and .mz3 for a surface of a brain; grids of the same
-        points, such as the other component of a wind; tables (.csv) of a row for each point.
+        FreeSurfer's (lh.curv, .annot, .mgh), .mz3 and CIFTI (.dscalar.nii, .dlabel.nii), whose
+        hemisphere the surface has to be, for a surface of a brain; grids of the same points, such as the other component of a wind; tables (.csv) of a row for each point.
     at : dict, optional
         Value or index along any other axis of a netCDF file by its name, such as
         ``{"number": 3}`` of an ensemble; a whole number within the values of an axis is the nearest
@@ -499,7 +499,7 @@ def _whole(
         if path.suffix.lower() in tables.SUFFIXES:
             tables.add(mesh, path)
             continue
-        arrays, meant = brains.overlay(path, mesh.n_points)
+        arrays, meant = brains.overlay(path, mesh)
         for name, rows in arrays.items():
             mesh.point_data[name] = rows
         if meant.arrays:

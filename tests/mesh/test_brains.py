@@ -262,13 +262,60 @@ def test_a_volume_of_freesurfer_and_colours(tmp_path):
     assert mesh["NIFTI"].tolist() == [[1, 2, 3]] * 8
 
 
-def test_values_of_brain_models_without_places_say_what_to_become(tmp_path):
+@pytest.fixture
+def of_models(tmp_path):
+    """Return a function that writes values of both hemispheres, over all points but the first."""
+    axes, count = nibabel.cifti2, BALL.n_points
+    sides = (
+        axes.BrainModelAxis.from_surface(range(1, count), count, f"CIFTI_STRUCTURE_CORTEX_{side}")
+        for side in ("LEFT", "RIGHT")
+    )
+    models = sum(sides, next(sides))
+
+    def write(name, first, rows):
+        path = tmp_path / name
+        rows = np.hstack([np.asarray(rows)[:, 1:], 7 - np.asarray(rows)[:, 1:]])
+        nibabel.cifti2.Cifti2Image(rows, (first, models)).to_filename(path)
+        return path
+
+    return write
+
+
+@pytest.fixture
+def left(tmp_path):
+    """Return the path of a surface that says that it is the left cortex."""
+    gifti(tmp_path / "left.surf.gii", surface=True)
+    image = nibabel.load(tmp_path / "left.surf.gii")
+    image.darrays[0].meta["AnatomicalStructurePrimary"] = "CortexLeft"
+    nibabel.save(image, tmp_path / "left.surf.gii")
+    return tmp_path / "left.surf.gii"
+
+
+def test_maps_of_brain_models_lie_over_their_surface(of_models, left, tmp_path):
     axes = nibabel.cifti2
-    model = axes.BrainModelAxis.from_surface([0, 1], 4, "CIFTI_STRUCTURE_CORTEX_LEFT")
-    image = axes.Cifti2Image(np.ones((1, 2)), (axes.ScalarAxis(["sulc"]), model))
-    image.to_filename(tmp_path / "a.dscalar.nii")
-    with pytest.raises(vizlight.files.FileError, match="CIFTI.*GIFTI.*overlay="):
-        vizlight.read(tmp_path / "a.dscalar.nii")
+    path = of_models("a.dscalar.nii", axes.ScalarAxis(["sulc", "curv"]), [DEPTH, 2 * DEPTH])
+    mesh = vizlight.read(left, overlay=path)
+    np.testing.assert_allclose(mesh["curv"][1:], 2 * DEPTH[1:], rtol=1e-6)
+    assert np.isnan(mesh["sulc"][0])
+    steps = of_models("a.dtseries.nii", axes.SeriesAxis(0, 1, 2), [DEPTH, 3 * DEPTH])
+    with pytest.warns(UserWarning, match="the last of its 2 steps is taken"):
+        mesh = vizlight.read(left, overlay=steps)
+    np.testing.assert_allclose(mesh["a.dtseries.nii"][1:], 3 * DEPTH[1:], rtol=1e-6)
+    regions = {0: ("???", (0, 0, 0, 0)), 3: ("V1", (1, 0, 0, 1))}
+    labels = of_models("a.dlabel.nii", axes.LabelAxis(["areas"], regions), [np.full(len(DEPTH), 3)])
+    mesh = vizlight.read(left, overlay=labels)
+    assert mesh["areas"].tolist() == [0] + [3] * (len(DEPTH) - 1)
+    assert meaning.of(mesh).arrays["areas"]
+    # A surface that is neither hemisphere is not guessed at.
+    gifti(tmp_path / "b.surf.gii", surface=True)
+    with pytest.raises(files.FileError, match=r"CORTEX_LEFT of \d+.*surface of \d+ points, cortex"):
+        vizlight.read(tmp_path / "b.surf.gii", overlay=path)
+
+
+def test_values_of_brain_models_without_places_say_what_to_become(of_models):
+    path = of_models("a.dscalar.nii", nibabel.cifti2.ScalarAxis(["sulc"]), [DEPTH])
+    with pytest.raises(files.FileError, match="CIFTI.*read the surface of one.*overlay="):
+        vizlight.read(path)
 
 
 def test_segments_of_a_file_of_labels_have_their_names_and_colours(tmp_path):

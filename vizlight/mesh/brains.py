@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pyvista as pv
 
+from vizlight import _check
 from vizlight._types import AnyArray, Foreign
 from vizlight.mesh import meaning, series
 from vizlight.mesh.georeference import UNIT
@@ -57,6 +58,10 @@ _MZ3 = {"faces": ("<i4", 3), "points": ("<f4", 3), "rgb": ("u1", 4), "values": (
 _MAGIC = b"MZ"
 #: Length of a step of a .tt file: coordinates are multiples of this share of a voxel.
 _TT = 32
+#: Key of GIFTI, and name of a field array, for the part of the brain that a surface is.
+STRUCTURE = "AnatomicalStructurePrimary"
+#: Ends of names of CIFTI files, whose maps have names of their own.
+MAPS = (".dscalar.nii", ".dlabel.nii")
 #: Note on values at the points of a surface, such as its curvature.
 NO_SURFACE = "values over a surface, without one: read the surface, and pass this file as overlay="
 
@@ -145,11 +150,12 @@ def read(path: Path) -> pv.PolyData:
     name = path.name.lower()
     arrays: dict[str, AnyArray] = {}
     notes: list[str] = []
+    structure = ""
     if name.endswith(".mz3"):
         arrays = _mz3(path)
         points, faces = arrays.pop("points", None), arrays.pop("faces", None)
     elif name.endswith((".gii", ".gii.gz")):
-        points, faces, arrays, notes = _gifti(path)
+        points, faces, arrays, notes, structure = _gifti(path)
     elif name.endswith(".annot") or path.read_bytes()[:3] == _CURV:
         points = faces = None
     else:
@@ -164,6 +170,8 @@ def read(path: Path) -> pv.PolyData:
     mesh: pv.PolyData = pv.PolyData.from_regular_faces(points.astype(kind), faces)
     for key, rows in arrays.items():
         mesh.point_data[key] = rows
+    if structure:
+        mesh.field_data[STRUCTURE] = [structure]
     if notes:
         meaning.attach(mesh, meaning.Meaning(notes=notes))
     return mesh
@@ -199,8 +207,8 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     image: Foreign = nibabel.load(path)
     if getattr(image, "affine", None) is None:
         raise ValueError(
-            "values of brain models (CIFTI), without their places: write those of a surface as "
-            "GIFTI, such as by wb_command -cifti-separate, and pass the file as overlay="
+            "values of brain models (CIFTI), without their places: read the surface of one, and "
+            "pass this file as overlay="
         )
     affine, shape = np.asarray(image.affine, dtype=np.float64), image.shape
     steps = int(shape[3]) if len(shape) > 3 else 1
@@ -274,24 +282,25 @@ def of_affine(affine: AnyArray, counts: Sequence[int]) -> pv.ImageData | pv.Stru
     return grid
 
 
-def overlay(path: Path, count: int) -> tuple[dict[str, AnyArray], meaning.Meaning]:
+def overlay(path: Path, surface: pv.DataSet) -> tuple[dict[str, AnyArray], meaning.Meaning]:
     """Return the arrays of a file for the points of a surface, by the name of the file.
 
-    The meaning has the names and colours of regions, as .annot and GIFTI have them.
+    The meaning has the names and colours of regions, as .annot, GIFTI and CIFTI have them.
 
     Parameters
     ----------
     path : pathlib.Path
-    count : int
-        Number of points of the surface.
+    surface : pyvista.DataSet
+        Surface, which is not changed.
 
     Raises
     ------
     ValueError
-        If the arrays have another length, with both numbers.
+        If the arrays have another length, with both numbers, or are of another part of the brain.
     """
     import nibabel
 
+    count = surface.n_points
     name = re.sub(r"\.gz$", "", path.name)
     stem = name.removesuffix(".gii")
     regions: list[tuple[int, str, Sequence[float]]] = []
@@ -299,7 +308,7 @@ def overlay(path: Path, count: int) -> tuple[dict[str, AnyArray], meaning.Meanin
         # Such a file may have a surface beside its values.
         arrays = {key: rows for key, rows in _mz3(path).items() if key in ("values", "rgb")}
     elif name.endswith(".gii"):
-        _, _, arrays, _ = _gifti(path)
+        arrays = _gifti(path)[2]
         labels: Foreign = nibabel.load(path)
         regions = [(one.key, one.label or "", one.rgba) for one in labels.labeltable.labels]
     elif name.endswith(".annot"):
@@ -309,8 +318,11 @@ def overlay(path: Path, count: int) -> tuple[dict[str, AnyArray], meaning.Meanin
         regions = [(i, names[i].decode(), row[:3] / 255) for i, row in enumerate(colors)]
     elif path.name.lower().endswith(VOLUMES):
         volume: Foreign = nibabel.load(path)
-        # Values of a surface in the form of a volume, mostly of N x 1 x 1 voxels.
-        arrays = {"values": np.asarray(volume.dataobj).reshape(-1)}
+        if isinstance(volume, nibabel.Cifti2Image):
+            arrays, regions = _of_models(volume, path, surface)
+        else:
+            # Values of a surface in the form of a volume, mostly of N x 1 x 1 voxels.
+            arrays = {"values": np.asarray(volume.dataobj).reshape(-1)}
     else:
         arrays = {"values": nibabel.freesurfer.read_morph_data(path)}
     other = {len(rows) for rows in arrays.values()} - {count}
@@ -318,7 +330,8 @@ def overlay(path: Path, count: int) -> tuple[dict[str, AnyArray], meaning.Meanin
         got = f"{min(other)} values" if other else "no values"
         raise ValueError(f"its overlay '{path}' has {got} for a surface of {count} points")
     single = len(arrays) == 1
-    arrays = {stem if single else f"{stem}_{key}": rows for key, rows in arrays.items()}
+    if not name.endswith(MAPS):
+        arrays = {stem if single else f"{stem}_{key}": rows for key, rows in arrays.items()}
     said = meaning.Meaning()
     if regions:
         for key, rows in arrays.items():
@@ -327,19 +340,57 @@ def overlay(path: Path, count: int) -> tuple[dict[str, AnyArray], meaning.Meanin
     return arrays, said
 
 
-def _gifti(path: Path) -> tuple[Foreign, Foreign, dict[str, AnyArray], list[str]]:
-    """Return points, triangles and other arrays of a GIFTI file, and the note on their frame."""
+def _of_models(
+    image: Foreign, path: Path, surface: pv.DataSet
+) -> tuple[dict[str, AnyArray], list[tuple[int, str, Sequence[float]]]]:
+    """Return the maps of a CIFTI file over one surface, and the names and colours of regions.
+
+    Points of which the file has no value, such as those of the medial wall, have NaN or label 0.
+    """
+    maps, models = (image.header.get_axis(i) for i in (0, 1))
+    said = surface.field_data[STRUCTURE] if STRUCTURE in surface.field_data else None
+    side = (f"cortex{hemisphere(surface)}" if said is None else str(said[0])).lower()
+    parts = [
+        (part, model.vertex)
+        for name, part, model in models.iter_structures()
+        if name.removeprefix("CIFTI_STRUCTURE_").replace("_", "").lower() == side
+        and models.nvertices.get(name) == surface.n_points
+    ]
+    if not parts:
+        names = ", ".join(f"{name} of {count}" for name, count in models.nvertices.items())
+        expected = f"values at the points of {names or 'no surface'}"
+        got = f"for a surface of {surface.n_points} points, {side}"
+        raise ValueError(f"its overlay '{path}' has {expected} {got}")
+    (part, points), labels = parts[0], getattr(maps, "label", None)
+    rows = np.asarray(image.dataobj[:, part])
+    kind, absent = (np.int32, 0) if labels is not None else (np.float32, np.nan)
+    whole = np.full((len(rows), surface.n_points), absent, dtype=kind)
+    whole[:, points] = rows
+    if not hasattr(maps, "name"):
+        # The steps of a series have no names.
+        if len(rows) > 1:
+            _check.warn(f"overlay: '{path}': the last of its {len(rows)} steps is taken")
+        return {"values": whole[-1]}, []
+    named = {str(name): row for name, row in zip(maps.name, whole, strict=True)}
+    regions = [] if labels is None else [(key, *one) for key, one in labels[0].items()]
+    return named, regions
+
+
+def _gifti(path: Path) -> tuple[Foreign, Foreign, dict[str, AnyArray], list[str], str]:
+    """Return points, triangles, other arrays, the note on the frame, and the part of the brain."""
     import nibabel
 
     image: Foreign = nibabel.load(path)
     parts: dict[int, Foreign] = {}
     arrays: dict[str, AnyArray] = {}
     notes: list[str] = []
+    structure = str(image.meta.get(STRUCTURE, ""))
     for i, part in enumerate(image.darrays):
         if part.intent in (_POINTS, _TRIANGLES):
             parts[part.intent] = np.asarray(part.data)
             if part.intent == _POINTS:
                 notes = _transform(part)
+                structure = str(part.meta.get(STRUCTURE, structure))
         else:
             kind = nibabel.nifti1.intent_codes.label[part.intent]
             name = part.meta.get("Name") or kind.removeprefix("NIFTI_INTENT_").lower()
@@ -348,7 +399,7 @@ def _gifti(path: Path) -> tuple[Foreign, Foreign, dict[str, AnyArray], list[str]
     if points is not None:
         # Arrays of another length are those of faces, or of another surface.
         arrays = {key: rows for key, rows in arrays.items() if len(rows) == len(points)}
-    return points, parts.get(_TRIANGLES), arrays, notes
+    return points, parts.get(_TRIANGLES), arrays, notes, structure
 
 
 def _transform(part: Foreign) -> list[str]:
