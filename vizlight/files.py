@@ -159,7 +159,8 @@ def read(
     overlay : path or sequence of paths, optional
         Files with values for the points, which become point arrays of their names: GIFTI (.gii),
         FreeSurfer's (lh.curv, .annot, .mgh), .mz3 and CIFTI (.dscalar.nii, .dlabel.nii), whose
-        hemisphere the surface has to be, for a surface of a brain; grids of the same points, such as the other component of a wind; tables (.csv) of a row for each point.
+        hemisphere the surface has to be, for a surface of a brain; grids of the same points, such
+        as the other component of a wind; tables (.csv) of a row for each point.
     at : dict, optional
         Value or index along any other axis of a netCDF file by its name, such as
         ``{"number": 3}`` of an ensemble; a whole number within the values of an axis is the nearest

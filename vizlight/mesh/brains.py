@@ -348,7 +348,7 @@ def _of_models(
     Points of which the file has no value, such as those of the medial wall, have NaN or label 0.
     """
     maps, models = (image.header.get_axis(i) for i in (0, 1))
-    said = surface.field_data[STRUCTURE] if STRUCTURE in surface.field_data else None
+    said = surface.field_data.get(STRUCTURE, None)
     side = (f"cortex{hemisphere(surface)}" if said is None else str(said[0])).lower()
     parts = [
         (part, model.vertex)
