@@ -8,6 +8,7 @@ from vizlight import cartography
 from vizlight.mesh import charts, projections
 from vizlight.mesh.georeference import in_degrees
 
+EARTH = projections.around(0.0)
 AMERICA = (-135, -45, 15, 60)
 
 
@@ -53,6 +54,21 @@ def test_the_outline_of_a_map_around_a_pole_is_its_ring():
     assert len(outline) == 360
     np.testing.assert_allclose(radii, radii[0], rtol=1e-9)
     assert charts.sheet(flat).extent == pytest.approx((-180, 180, 60, 90), abs=0.6)
+
+
+def test_a_surface_around_the_earth_is_one_map_with_round_sides():
+    faces = sheet_of(-180, 180, -80, 85, 5).extract_surface(algorithm=None).triangulate()
+    flat = cartography.chart(faces)
+    assert "eqearth" in str(flat.field_data["projection"][0])
+    sheet = charts.sheet(flat)
+    # Every point is on the map, those of the first and the last meridian on its outline.
+    assert sheet.holds(np.asarray(flat.points)[:, :2]).all()
+    longest = np.abs(sheet.outline[:, 0]).max()
+    assert longest == pytest.approx(flat.bounds.x_max, rel=1e-3)
+    assert np.abs(sheet.outline[[0, -1], 0]).max() < 0.65 * longest
+    # One that ends elsewhere keeps its box.
+    part = cartography.chart(faces.clip("x", origin=(90, 0, 0)), EARTH)
+    assert len(charts.sheet(part).outline) == 4
 
 
 @pytest.mark.parametrize(("west", "columns"), [(0.0, 72), (0.0, 73), (-180.0, 72), (-180.0, 73)])

@@ -27,6 +27,8 @@ EDGE = 1e-3
 SAMPLES = 60
 #: Degrees beyond a map within which a line that ends on it has a place.
 BESIDE = 3.0
+#: Points of the meridian at which a map of the earth ends.
+EDGE_POINTS = 90
 #: Halvings of a step of a line where it crosses the outline.
 HALVINGS = 14
 #: Ratio of steps to both sides from which on one crosses the seam of a projection.
@@ -313,10 +315,19 @@ def sheet(mesh: pv.DataSet) -> MapSheet | None:
     metres = meaning.metres(georeference.unit_of(mesh))
     if not names or metres is None or not georeference.on_earth(mesh):
         return None
-    plane = projections.of_text(str(mesh.field_data[names[0]][0]))
-    outline = _outline(mesh)
+    text = str(mesh.field_data[names[0]][0])
+    plane, outline = projections.of_text(text), _outline(mesh)
     if plane is None or not np.ptp(outline, axis=0).all():
         return None
+    words = projections.keywords(text)
+    if words.get("proj") == "eqearth" and isinstance(mesh, pv.PolyData):
+        # A surface around the earth ends at the meridian opposite to the middle one.
+        edge = float(words.get("lon_0", 0.0)) + georeference.AROUND / 2
+        lat = np.linspace(*plane.inverse(outline[1:3] * metres)[:, 1], EDGE_POINTS)
+        side = plane.forward(np.column_stack([np.full_like(lat, edge), lat])) / metres
+        ring = np.concatenate([side, side[::-1] * (-1, 1)])
+        if np.ptp(ring[:, 0]) <= (1 + EDGE) * np.ptp(outline[:, 0]):
+            outline = ring
     return MapSheet(plane, outline, metres)
 
 

@@ -203,16 +203,21 @@ def _of_columns(
 
 
 def middle_of(mesh: pv.DataSet) -> float | None:
-    """Return the middle longitude of a grid around the whole earth, None for all else.
+    """Return the middle longitude of a map of the whole earth, None for all else.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
-        Map in degrees, whose columns are meridians.
+        Map in degrees: a grid whose columns are meridians, or a surface that ends at one.
     """
+    west, east, south, north = mesh.bounds[:4]
+    if not south < -WHOLE or not north > WHOLE:
+        return None
+    if isinstance(mesh, pv.PolyData):
+        is_around = abs(east - west - georeference.AROUND) < SLIGHT
+        return round((west + east) / 2, 6) if is_around else None
     lon = _meridians(mesh)
-    south, north = mesh.bounds[2:4]
-    if lon is None or not south < -WHOLE or not north > WHOLE:
+    if lon is None:
         return None
     return round(float(_first(lon).min()) + georeference.AROUND / 2, 6)
 
