@@ -323,7 +323,8 @@ def sheet(mesh: pv.DataSet) -> MapSheet | None:
     if words.get("proj") == "eqearth" and isinstance(mesh, pv.PolyData):
         # A surface around the earth ends at the meridian opposite to the middle one.
         edge = float(words.get("lon_0", 0.0)) + georeference.AROUND / 2
-        lat = np.linspace(*plane.inverse(outline[1:3] * metres)[:, 1], EDGE_POINTS)
+        south, north = plane.inverse(outline[1:3] * metres)[:, 1]
+        lat = np.linspace(south, north, EDGE_POINTS)
         side = plane.forward(np.column_stack([np.full_like(lat, edge), lat])) / metres
         ring = np.concatenate([side, side[::-1] * (-1, 1)])
         if np.ptp(ring[:, 0]) <= (1 + EDGE) * np.ptp(outline[:, 0]):
