@@ -38,9 +38,17 @@ if TYPE_CHECKING:
     from vizlight.looks.wishes import Wishes
 
 #: Colour map where nothing is lit, and that of values on lit surfaces.
-PLAIN = LIGHTNESS, ON_SURFACES = "viridis", "vizlight.surface"
-#: Colour maps of bands and of values around 0, and of amounts on a ground, and the colour of this.
+LIGHTNESS, ON_SURFACES = "viridis", "vizlight.surface"
+#: Colour maps of bands, and of amounts on a ground, and the colour of this.
 ON_BANDS, ON_GROUND, GROUND = "vizlight.bands", "vizlight.amounts", "#fbfbf8"
+#: Those of values around 0 in place of these; on lit surfaces one without dark ends, by Moreland,
+#: Diverging color maps for scientific visualization (2009).
+AROUND_ZERO = {LIGHTNESS: ON_BANDS, ON_SURFACES: "coolwarm"}
+#: Colour of missing values where 0 is light grey.
+DARK_MISSING = "#7a7a7a"
+#: Light of a room at the place that is as bright as white paper in other light: a surface without
+#: data stands out from paper.
+IN_ROOM = 0.8
 #: Least width of a line, in pixels, for each pixel of the width of a picture: 1.5 at 300 dpi where
 #: the picture is 85 mm wide.
 THIN = 1.5 / (85 / 25.4 * 300)
@@ -441,6 +449,7 @@ class Case:
         if self.wishes.make_scene is not None:
             return scene
         exposure = exposure_seen(mesh.run(), scene.run(), camera.run(), light)
+        exposure = round(IN_ROOM * exposure, 3) if self.in_room else exposure
         return scene if exposure == 1 else Step("scene", ".replace", scene, exposure=exposure)
 
     @property
@@ -468,16 +477,17 @@ class Case:
         """
         values = values[np.isfinite(values)] / unit
         # Points in the pale colour of 0 would not be seen on paper.
-        is_plain = cmap in PLAIN and self.contents.dimension > 0
+        is_plain = cmap in AROUND_ZERO and self.contents.dimension > 0
         limits: Foreign = self.wishes.colors.get("clim")
         if limits is not None or not values.size:
             is_even = limits is not None and limits[0] == -limits[1]
-            cmap = ON_BANDS if is_even and is_plain else cmap
+            cmap = AROUND_ZERO[cmap] if is_even and is_plain else cmap
             return {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors, ""
         shown = range_shown(values, **kind)
         if shown.is_signed and is_plain:
-            shown, cmap = shown.around_zero(values), ON_BANDS
-        colors = {"cmap": ON_GROUND if shown.ground else cmap, "nan_color": MISSING}
+            shown, cmap = shown.around_zero(values), AROUND_ZERO[cmap]
+        missing = DARK_MISSING if cmap == AROUND_ZERO[ON_SURFACES] else MISSING
+        colors = {"cmap": ON_GROUND if shown.ground else cmap, "nan_color": missing}
         colors |= self.wishes.colors
         return colors | colors_in(shown, colors["cmap"], unit), shown.words(name)
 

@@ -55,7 +55,7 @@ STEP, FINEST = 0.125, 0.3
 #: Width of the head of a stroke as a share of its length, and its least and largest one in least
 #: widths of lines: on maps, where wider ones darken what is beside them for the eye, on surfaces
 #: that bend, where thinner ones tell as much, and in volumes.
-HEAD_WIDTH, WIDTHS, WIDTHS_ON_SURFACE, WIDTHS_IN_VOLUME = 0.55, (2.8, 3.4), (2.2, 2.6), (4.0, 8.0)
+HEAD_WIDTH, WIDTHS, WIDTHS_ON_SURFACE, WIDTHS_IN_VOLUME = 0.7, (3.0, 4.0), (2.6, 3.4), (4.0, 8.0)
 #: Length below which lines on surfaces are left out, in distances between strokes: loops so small
 #: are blots.
 SHORTEST_ON_SURFACE = 2.0
