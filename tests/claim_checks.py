@@ -11,7 +11,7 @@ import pyvista as pv
 from oracles import exact, mp
 
 from studies import normals, sky
-from vizlight import View, streamlines
+from vizlight import Bundle, Light, Scene, View, illuminate, streamlines
 from vizlight.geometry import relief
 from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.geometry.nspace import manifolds
@@ -200,6 +200,21 @@ def normals_by_corners(random):
             for vectors in (surface_normals(mesh), normals.by_vtk(mesh), *by_four_weights(mesh))
         )
         found += zip(stated, (error / others[0], error / min(others[1:])), strict=False)
+    return found
+
+
+@case
+def light_of_single_lines(random):
+    """Straight lines of any length, diameter and number of points, under light of any direction."""
+    found = []
+    for _ in range(30):
+        way, light = random.normal(size=(2, 3))
+        points = np.linspace(-0.5, 0.5, int(random.integers(2, 60)))[:, np.newaxis] * way
+        scene = Scene(lights=[Light(direction=way if random.random() < 0.3 else light)])
+        bundle = Bundle(diameter=np.linalg.norm(way) * 10 ** random.uniform(-3, -1))
+        lit = illuminate(pv.lines_from_points(points), scene, bundle=bundle)
+        off = 1 - np.asarray(lit["transmittance"], float)
+        found += [(0.13, off.max()), (0.04, off.mean())]
     return found
 
 
