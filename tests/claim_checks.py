@@ -256,12 +256,13 @@ def shadows_of_the_default_depth(random):
 @case
 def lengths_of_degrees(random):
     """Metres of a degree of latitude and longitude on the ellipsoid WGS 84."""
-    latitude = np.radians(random.uniform(-89, 89, 200))
-    squared = 6.69437999e-3
+    degrees = random.uniform(-88.9, 88.9, 200)
+    latitude, squared = np.radians(degrees), 6.69437999e-3
     flat = 1 - squared * np.sin(latitude) ** 2
     across, along = 6378137 / np.sqrt(flat), 6378137 * (1 - squared) / flat**1.5
-    true = np.radians([across, along])
-    return [(0.006, np.abs(georeference.METRES / true - 1).max())]
+    true = np.radians([across * np.cos(latitude), along])
+    ours = georeference.METRES * np.array([georeference._parallel(degrees), np.ones(200)])
+    return [(0.006, np.abs(ours / true - 1).max())]
 
 
 @case
