@@ -95,10 +95,12 @@ def lengths_below_rough_fields(random):
 
 @case
 def axes_of_an_eye(random):
-    """Scalar products of the axes, which are 0 and 1."""
+    """Scalar products of the axes, which are 0 and 1; in half of them up is beside the view."""
     found = []
-    for n in np.repeat(range(3, 7), 15):
-        rows = exact(View(direction=random.standard_normal(n)).axes())
+    for i, n in enumerate(np.repeat(range(3, 7), 15)):
+        way = random.standard_normal(n)
+        beside = way + 10 ** random.uniform(-5, 0) * random.standard_normal(n)
+        rows = exact(View(direction=way, up=beside if i % 2 else None).axes())
         found += [
             (4 * EPS, float(abs(oracles.dot(one, other) - (one is other))))
             for one in rows
