@@ -75,7 +75,8 @@ def lengths_below_rough_fields(random):
     """Uneven nodes; and heights of integers with rays in the planes of the nodes."""
     found = []
     for whole in (False, True):
-        x, y = (np.arange(float(n)) if whole else np.sort(random.uniform(0, 9, n)) for n in (9, 8))
+        widths = (10 ** random.uniform(-1.4, 1, n) for n in (9, 8))
+        x, y = (np.arange(float(n.size)) if whole else np.cumsum(n) for n in widths)
         z = random.integers(0, 5, (8, 9)).astype(float) if whole else random.uniform(0, 4, (8, 9))
         scale = max(map(np.ptp, (x, y, z)))
         for azimuth in (0, 90, 180, 270) if whole else random.uniform(0, 360, 4):
