@@ -11,7 +11,7 @@ import pyvista as pv
 from oracles import exact, mp
 
 from studies import normals, sky
-from vizlight import View, streamlines
+from vizlight import Bundle, Light, Scene, View, illuminate, streamlines
 from vizlight.geometry import relief
 from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.geometry.nspace import manifolds
@@ -75,7 +75,8 @@ def lengths_below_rough_fields(random):
     """Uneven nodes; and heights of integers with rays in the planes of the nodes."""
     found = []
     for whole in (False, True):
-        x, y = (np.arange(float(n)) if whole else np.sort(random.uniform(0, 9, n)) for n in (9, 8))
+        widths = (10 ** random.uniform(-1.4, 1, n) for n in (9, 8))
+        x, y = (np.arange(float(n.size)) if whole else np.cumsum(n) for n in widths)
         z = random.integers(0, 5, (8, 9)).astype(float) if whole else random.uniform(0, 4, (8, 9))
         scale = max(map(np.ptp, (x, y, z)))
         for azimuth in (0, 90, 180, 270) if whole else random.uniform(0, 360, 4):
@@ -95,10 +96,12 @@ def lengths_below_rough_fields(random):
 
 @case
 def axes_of_an_eye(random):
-    """Scalar products of the axes, which are 0 and 1."""
+    """Scalar products of the axes, which are 0 and 1; in half of them up is beside the view."""
     found = []
-    for n in np.repeat(range(3, 7), 15):
-        rows = exact(View(direction=random.standard_normal(n)).axes())
+    for i, n in enumerate(np.repeat(range(3, 7), 15)):
+        way = random.standard_normal(n)
+        beside = way + 10 ** random.uniform(-5, 0) * random.standard_normal(n)
+        rows = exact(View(direction=way, up=beside if i % 2 else None).axes())
         found += [
             (4 * EPS, float(abs(oracles.dot(one, other) - (one is other))))
             for one in rows
@@ -204,6 +207,21 @@ def normals_by_corners(random):
 
 
 @case
+def light_of_single_lines(random):
+    """Straight lines of any length, diameter and number of points, under light of any direction."""
+    found = []
+    for _ in range(30):
+        way, light = random.normal(size=(2, 3))
+        points = np.linspace(-0.5, 0.5, int(random.integers(2, 60)))[:, np.newaxis] * way
+        scene = Scene(lights=[Light(direction=way if random.random() < 0.3 else light)])
+        bundle = Bundle(diameter=np.linalg.norm(way) * 10 ** random.uniform(-3, -1))
+        lit = illuminate(pv.lines_from_points(points), scene, bundle=bundle)
+        off = 1 - np.asarray(lit["transmittance"], float)
+        found += [(0.13, off.max()), (0.04, off.mean())]
+    return found
+
+
+@case
 def light_behind_ridges(random):
     """High walls on level ground, as wide as a ray needs to go on a way through them."""
     found = []
@@ -241,12 +259,13 @@ def shadows_of_the_default_depth(random):
 @case
 def lengths_of_degrees(random):
     """Metres of a degree of latitude and longitude on the ellipsoid WGS 84."""
-    latitude = np.radians(random.uniform(-89, 89, 200))
-    squared = 6.69437999e-3
+    degrees = random.uniform(-88.9, 88.9, 200)
+    latitude, squared = np.radians(degrees), 6.69437999e-3
     flat = 1 - squared * np.sin(latitude) ** 2
     across, along = 6378137 / np.sqrt(flat), 6378137 * (1 - squared) / flat**1.5
-    true = np.radians([across, along])
-    return [(0.006, np.abs(georeference.METRES / true - 1).max())]
+    true = np.radians([across * np.cos(latitude), along])
+    ours = georeference.METRES * np.array([georeference._parallel(degrees), np.ones(200)])
+    return [(0.006, np.abs(ours / true - 1).max())]
 
 
 @case

@@ -142,7 +142,8 @@ def measure(kind, points, grid, count):
     lines = geometry.medium(flat, ids, offsets, voxel=voxel)
     along, middle = made.tangents[made.own], made.middles[made.own]
     at = np.einsum("ij,ij->i", made.places - middle, along)[:, np.newaxis]
-    halves = np.stack([(LENGTH / 2 - at) * along, -(LENGTH / 2 + at) * along], axis=1)
+    halves = np.ones((points, 2, 4))
+    halves[:, 0, :3], halves[:, 1, :3] = (LENGTH / 2 - at) * along, -(LENGTH / 2 + at) * along
     targets = lines.targets(made.places, along, halves)
     lights = [(TOWARD, False), (LAMP, True)]
     if count:

@@ -136,12 +136,13 @@ def sky(
     endless slope of angle b sees (1 + cos b) / 2; light from other points is not part of V.
 
     Fields: horizons through every cell, of large ones by scan lines, exact for near cells; holes
-    hide nothing, and heights beyond the border are those of the border. The error is measured by
-    half of the azimuths, and at random nodes against every cell in the way. Which way is taken
-    depends on the field and the error alone. Surfaces and lines: rays in float32; the error is that
-    of two halves of the rays, pooled over points like each other, which is no bound for a single
-    point. A point that sees nothing has the sky of a place beside it on its largest triangle: where
-    faces meet inward, rounding puts the point itself on the wrong side of one.
+    hide nothing, though the side of a cell between two heights does, and heights beyond the border
+    are those of the border. The error is measured by half of the azimuths, and at random nodes
+    against every cell in the way. Which way is taken depends on the field and the error alone.
+    Surfaces and lines: rays in float32; the error is that of two halves of the rays, pooled over
+    points like each other, which is no bound for a single point. A point that sees nothing has the
+    sky of a place beside it on its largest triangle: where faces meet inward, rounding puts the
+    point itself on the wrong side of one.
 
     The mean of :func:`vizlight.relief_shadow` over the sky is V only at depth 0.
 

@@ -199,7 +199,7 @@ class Dimmed:
         halves: Array | None = None
         if inputs.tangents is not None:
             # Length 0 stands for a point on no line of the medium, which adds nothing to its depth.
-            halves = np.zeros((len(points), 2, 3))
+            halves = np.zeros((len(points), 2, 4))
             if work.of_meshes and polylines.has_lines_only(mesh):
                 halves = polylines.of_points(mesh, geometry.line_halves)
         if rows is not None and len(rows) * inputs.repeat == len(points):

@@ -139,7 +139,7 @@ class View:
         up = np.eye(n)[1 if abs(toward[2]) > STEEP else 2] if self.up is None else unit(self.up)
         if n == 3:
             # The two cross products remove the part of up that lies along the view.
-            right = unit(np.cross(up, toward))
+            right = unit(_across(np.cross(up, toward), toward[np.newaxis]))
             return np.stack([right, np.cross(toward, right), toward])
         up = unit(_across(up, toward[np.newaxis]))
         # The axis with most left gives right, so that its digits do not cancel.

@@ -1,17 +1,18 @@
 """Light inside a bundle of lines: the lines as a medium of thin cylinders.
 
 A line of diameter d takes from light of direction w the share ``d |w x t|`` per length of line and
-area across w, and the share of the light that is left is the exponential of minus the sum on its
-way (Beer and Lambert). The sum is taken on a grid in the light's own frame: each piece of a line is
-spread over the 8 voxels around it, the voxels are summed along the light, and the sum is read at a
-point from the 8 voxels around that. All lengths are in voxels.
+area across w, and each of its free ends ``pi / 8 d^2 |w . t|``, half of the disc that closes it.
+The share of the light that is left is the exponential of minus the sum on its way (Beer and
+Lambert). The sum is taken on a grid in the light's own frame: each piece of a line is spread over
+the 8 voxels around it, the voxels are summed along the light, and the sum is read at a point from
+the 8 voxels around that. All lengths are in voxels.
 
 Two corrections are in closed form. A point of a line does not shade itself: the mean share of both
 halves of its line in its depth follows from the hat function of the voxels, from the direction of
-each half and from the place where it ends. A long straight line adds 1/3. And lines are spread at
-random within a voxel, so the mean of the exponential is above the exponential of the mean, which a
-factor ``1 + d / 4`` of the depth makes up for: it stands for the lines, d wide, that lie in one
-another's shadow.
+each half and from the place where it ends, and so does that of its free ends. A long straight line
+adds 1/3. And lines are spread at random within a voxel, so the mean of the exponential is above the
+exponential of the mean, which a factor ``1 + d / 4`` of the depth makes up for: it stands for the
+lines, d wide, that lie in one another's shadow.
 """
 
 from __future__ import annotations
@@ -33,6 +34,9 @@ __all__ = ["Medium", "Targets", "directions", "medium"]
 SAVED = 60e-9
 #: Number of places that NumPy spreads at once.
 AT_ONCE = 1 << 19
+#: Place in a voxel of a line through the origin: there its hat functions have their mean over all
+#: places, so that a single straight line adds to its own depth what is subtracted.
+ASIDE = (1 - 1 / 3**0.5) / 2
 
 
 def cut(middles: Array, vectors: Array, parts: Indices) -> tuple[Array, Array]:
@@ -53,7 +57,7 @@ def box(rows: Array) -> tuple[Array, tuple[int, int, int]]:
         return np.zeros((3, 1), np.float32), (3, 3, 3)
     # An empty layer before all pieces and two behind: a place outside is clipped to one, where it
     # finds no line beside it, or the whole sum behind the last.
-    low = np.floor(rows.min(axis=1, keepdims=True)) - 1
+    low = np.floor(rows.min(axis=1, keepdims=True) + ASIDE) - np.float32(1 + ASIDE)
     i, j, k = (int(n) + 4 for n in (rows.max(axis=1) - low[:, 0]))
     return low, (i, j, k)
 
@@ -142,7 +146,7 @@ def summed(grid: Array) -> Array:
 
 
 def voxel_depths(
-    middles: Array, vectors: Array, places: Array, frame: Array, /
+    middles: Array, vectors: Array, places: Array, frame: Array, discs: Array | None = None, /
 ) -> tuple[Array, Array]:
     """Return the length of pieces, across a direction, on either side of places.
 
@@ -154,6 +158,8 @@ def voxel_depths(
         Places, in voxels.
     frame : ndarray of float32, shape (3, 3)
         Orthonormal frame in rows; the last row is the direction.
+    discs : ndarray of float32, shape (M,), optional
+        What the free ends of each piece add, times its part along the direction.
 
     Returns
     -------
@@ -165,7 +171,12 @@ def voxel_depths(
     low, shape = box(turned)
     # A cylinder takes from the light by |w x t|, the length of its part in the plane across w.
     u, v = np.einsum("ij,jk->ik", frame[:2], vectors)
-    grid = spread(turned - low, np.sqrt(u * u + v * v), shape)
+    across = np.sqrt(u * u + v * v)
+    if discs is not None:
+        # Few pieces are the last of their line.
+        last = np.flatnonzero(discs)
+        across[last] += discs[last] * np.abs(np.einsum("i,ij->j", frame[2], vectors[:, last]))
+    grid = spread(turned - low, across, shape)
     total = summed(grid)
     cells = np.clip(at - low, 0, np.array(shape, np.float32)[:, np.newaxis] - 2)
     back = read(grid, cells)
@@ -210,6 +221,9 @@ def _read(grid: Array, cells: Array, rows: int, columns: int, values: Array) -> 
 #: Mean square of the hat function of voxels across a line, and numbers of lengths and of angles in
 #: the table of the depth that half a line adds to its own.
 ACROSS, LENGTHS, ANGLES = 2 / 3, 65, 65
+#: Half of the area of a disc of diameter 1, and how far a half of a line may bend for its free end
+#: to count as ahead, as a share of its length.
+DISC, STRAIGHT = np.pi / 8, 0.05
 #: Least side of a voxel in diameters.
 LEAST_VOXEL = 2.0
 #: Voxels along a side of the blocks by which pieces are sorted, and more blocks than there are.
@@ -252,10 +266,10 @@ class Targets(NamedTuple):
         Mask of the finite points; others are not dimmed.
     vectors : ndarray of float32, shape (3, N), or None
         Unit tangents of lines or unit normals of a surface.
-    halves : ndarray of float32, shape (2, 3, N), or None
+    halves : ndarray of float32, shape (2, 4, N), or None
         Vectors along both halves of the line of the medium that a point belongs to, as long as
-        these, 0 for none; None for a surface, which light reaches from the side of its normals
-        alone.
+        these, 0 for none, and 1 where it is straight to a free end, else 0; None for a surface,
+        which light reaches from the side of its normals alone.
     """
 
     places: Array
@@ -296,7 +310,9 @@ class Targets(NamedTuple):
             None if self.halves is None else np.take(self.halves, order, axis=2),
         )
 
-    def own_depth(self, toward: Array, width: Array | float = 1.0) -> Array | float:
+    def own_depth(
+        self, toward: Array, width: Array | float = 1.0, thick: float = 0.0
+    ) -> Array | float:
         """Return the depth per diameter that the line of a point adds at the point itself.
 
         Parameters
@@ -305,6 +321,8 @@ class Targets(NamedTuple):
             Unit direction.
         width : ndarray, shape (N,), or float
             Width of the voxels at the points, in voxels of the medium.
+        thick : float
+            Diameter of the lines in voxels; 0 for lines without free ends.
 
         Returns
         -------
@@ -314,12 +332,19 @@ class Targets(NamedTuple):
         if self.halves is None:
             return 0.0
         forth, back = np.zeros((2, self.places.shape[1]))
-        for half in self.halves:
+        disc: Array | float = 0.0
+        if thick and self.vectors is not None:
+            cosine = np.einsum("i...,i...->...", toward.reshape(3, -1), self.vectors)
+            disc = DISC * thick / width * np.abs(cosine)
+        for *rows, free in self.halves:
+            half = np.stack(rows)
             along = np.einsum("i...,i...->...", toward.reshape(3, -1), half)
             across = np.sqrt(np.maximum(np.einsum("ij,ij->j", half, half) - along * along, 0))
             ahead, whole = _half(across / width, np.arctan2(along, across))
+            end = free * disc * _spline(across / width)
+            before = end * _passed(along / width)
             # What is ahead of a point in one direction is behind it in the other.
-            forth, back = forth + ahead, back + whole - ahead
+            forth, back = forth + ahead + before, back + whole - ahead + end - before
         # A depth per diameter is a length over an area, so in wider voxels it is less in
         # proportion.
         depths: Array = np.stack([forth, back]) * (ACROSS / width)
@@ -353,17 +378,27 @@ def _halves() -> Array:
     """
     fine = 8
     v = np.linspace(0, 2, fine * (LENGTHS - 1) + 1)
-    weight = np.where(v < 1, 2 / 3 - v * v + v**3 / 2, (2 - v) ** 3 / 6)
     angles = np.linspace(-np.pi / 2, np.pi / 2, ANGLES)
-    # Beyond two voxels the whole of a piece is on one side.
-    along = np.clip(v[:, np.newaxis] * np.tan(angles), -2, 2)
-    s = np.abs(along)
-    # The integral of the spline from 0 on, which is 1/2 at 2.
-    inner, outer = 2 * s / 3 - s**3 / 3 + s**4 / 8, 1 / 2 - (2 - s) ** 4 / 24
-    values = weight[:, np.newaxis] * (0.5 + np.sign(along) * np.where(s < 1, inner, outer))
+    values = _spline(v)[:, np.newaxis] * _passed(v[:, np.newaxis] * np.tan(angles))
     steps = (values[1:] + values[:-1]) / 2 * (v[1] - v[0])
     table: Array = np.concatenate([np.zeros((1, ANGLES)), np.cumsum(steps, axis=0)])[::fine]
     return table
+
+
+def _spline(v: Array) -> Array:
+    """Return the cubic B-spline at distances of 0 or more."""
+    result: Array = np.where(v < 1, 2 / 3 - v * v + v**3 / 2, np.maximum(2 - v, 0) ** 3 / 6)
+    return result
+
+
+def _passed(along: Array) -> Array:
+    """Return the integral of the cubic B-spline up to places."""
+    # Beyond two voxels the whole of a piece is on one side.
+    s = np.minimum(np.abs(along), 2)
+    # From 0 on, which is 1/2 at 2.
+    inner, outer = 2 * s / 3 - s**3 / 3 + s**4 / 8, 1 / 2 - (2 - s) ** 4 / 24
+    result: Array = 0.5 + np.sign(along) * np.where(s < 1, inner, outer)
+    return result
 
 
 @dataclass(frozen=True)
@@ -374,6 +409,8 @@ class Medium:
     ----------
     middles, vectors : ndarray of float32, shape (3, M)
         Middle and vector of each piece, in voxels from the origin.
+    free : ndarray of float32, shape (M,)
+        Number of free ends of the line in each piece, over the length of the piece.
     origin : ndarray, shape (3,)
         Centre of the lines.
     voxel : float
@@ -382,6 +419,7 @@ class Medium:
 
     middles: Array
     vectors: Array
+    free: Array
     origin: Array
     voxel: float
 
@@ -396,7 +434,7 @@ class Medium:
             Positions in the unit of the lines.
         vectors : ndarray, shape (N, 3), optional
             Tangents of lines or normals of a surface, of any length.
-        halves : ndarray, shape (N, 2, 3), optional
+        halves : ndarray, shape (N, 2, 4), optional
             Both halves of the lines that the points belong to, for tangents; see
             :func:`line_halves`.
 
@@ -419,11 +457,13 @@ class Medium:
                 rows /= np.sqrt((rows * rows).sum(axis=0))
             unit = np.where(np.isfinite(rows), rows, 0).astype(np.float32)
         if halves is not None:
-            halves = np.clip(halves.transpose(1, 2, 0) / self.voxel, -FARTHEST, FARTHEST)
-            halves = np.ascontiguousarray(halves, np.float32)
+            halves = halves.transpose(1, 2, 0) / np.array([*3 * [self.voxel], 1])[:, np.newaxis]
+            halves = np.ascontiguousarray(np.clip(halves, -FARTHEST, FARTHEST), np.float32)
         return Targets(np.ascontiguousarray(places), finite, unit, halves)
 
-    def depths(self, places: Array, toward: VectorLike, /) -> tuple[Array, Array]:
+    def depths(
+        self, places: Array, toward: VectorLike, thick: float = 0.0, /
+    ) -> tuple[Array, Array]:
         """Return the optical depth per diameter toward a direction and toward its opposite.
 
         Parameters
@@ -432,6 +472,8 @@ class Medium:
             Places of :class:`Targets`.
         toward : sequence of float, shape (3,)
             Direction toward a light at infinity, of any length.
+        thick : float
+            Diameter of the lines in voxels; 0 for lines without free ends.
 
         Returns
         -------
@@ -439,7 +481,8 @@ class Medium:
             Depths, the point's own line included; diameters and depths are in voxels.
         """
         frame = _frame(toward).astype(np.float32)
-        return voxel_depths(self.middles, self.vectors, places, frame)
+        discs = np.float32(DISC * thick) * self.free
+        return voxel_depths(self.middles, self.vectors, places, frame, discs)
 
     def dimmed(
         self,
@@ -528,25 +571,29 @@ class Medium:
         if not near:
             # The last row of the frame is the direction with length 1, whatever length was given.
             toward = _frame(place)[2].astype(np.float32)
-            depth, _ = self.depths(targets.places, toward)
-            return _left(depth, _ahead(targets.own_depth(toward)), _crowded(thick))
+            depth, _ = self.depths(targets.places, toward, thick)
+            line = _ahead(targets.own_depth(toward, thick=thick))
+            return _left(depth, line, _crowded(thick))
         # A lamp at a place has a fan of rays: voxels of a cube map around it in place of a box.
         lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
-        depth, width = depths(self.middles, self.vectors, targets.places, lamp, thick)
+        discs = DISC * thick * self.free
+        depth, width = depths(self.middles, self.vectors, targets.places, lamp, thick, discs)
         way = lamp[:, np.newaxis] - targets.places
         # A point at the lamp itself has no direction toward it, and nothing is divided by 0.
         way /= np.maximum(size(way), NARROWEST)
         width = np.maximum(width, NARROWEST)
         # The depth has the factor for crowded lines, and so must the depth subtracted from it.
-        line = _ahead(targets.own_depth(way.astype(np.float32), width)) * crowding(thick / width)
+        line = _ahead(targets.own_depth(way.astype(np.float32), width, thick))
+        line *= crowding(thick / width)
         return _left(depth, line, thick)
 
     def _pair(self, targets: Targets, thick: float, toward: Array) -> tuple[Array, Array]:
         """Return the weighted share of light from a direction and its opposite, and the weight."""
         toward = toward.astype(np.float32)
         facing = targets.facing(toward)
-        depths = np.stack(self.depths(targets.places, toward))
-        forth, back = _left(depths, targets.own_depth(toward), _crowded(thick))
+        depths = np.stack(self.depths(targets.places, toward, thick))
+        own = targets.own_depth(toward, thick=thick)
+        forth, back = _left(depths, own, _crowded(thick))
         # Light from each end counts by the share of it that the point would receive.
         return facing[0] * forth + facing[1] * back, facing.sum(axis=0)
 
@@ -594,12 +641,29 @@ def medium(points: Array, connectivity: Indices, offsets: Indices, /, *, voxel: 
     # Pieces no longer than a voxel, so that the spread over 8 voxels is a fair hat.
     parts = np.maximum(1, np.ceil(np.linalg.norm(vector, axis=1) - 1e-9)).astype(np.intp)
     middles, vectors = cut((start + vector / 2).T, vector.T, parts)
+    free = _free_ends(connectivity, offsets)
+    last = np.cumsum(parts) - 1
+    ends_of = np.zeros(middles.shape[1])
+    ends_of[last - parts + 1] += free[first]
+    ends_of[last] += free[first + 1]
+    length = size(vectors)
+    ends_of = np.divide(ends_of, length, out=np.zeros_like(length), where=length > 0)
     # Pieces near each other are spread one after the other, on voxels that are in the cache.
     order = _by_blocks(middles)
     middles, vectors = (
         np.take(rows.astype(np.float32), order, axis=1) for rows in (middles, vectors)
     )
-    return Medium(middles, vectors, origin, voxel)
+    return Medium(middles, vectors, ends_of[order].astype(np.float32), origin, voxel)
+
+
+def _free_ends(connectivity: Indices, offsets: Indices) -> Bools:
+    """Return which places of the connectivity are ends of lines that no line goes on from."""
+    free: Bools = np.zeros(len(connectivity), np.bool_)
+    some = np.diff(offsets) > 0
+    ends = np.concatenate([offsets[:-1][some], offsets[1:][some] - 1])
+    # The seam of a closed line, and a point where lines meet, are no ends.
+    free[ends] = np.bincount(connectivity)[connectivity[ends]] == 1
+    return free
 
 
 def _by_blocks(places: Array) -> Indices:
@@ -618,10 +682,11 @@ def segment_starts(connectivity: Indices, offsets: Indices, /) -> Indices:
 
 
 def line_halves(points: Array, connectivity: Indices, offsets: Indices, /) -> Array:
-    """Return both halves of the longest line that each point belongs to, shape (N, 2, 3).
+    """Return both halves of the longest line that each point belongs to, shape (N, 2, 4).
 
     Each is a vector along the segment beside the point, as long as the line from the point to its
-    end and to its start; 0 at an end of a line.
+    end and to its start; 0 at an end of a line. The fourth component is 1 where the half is
+    straight to a free end, else 0.
     """
     first = segment_starts(connectivity, offsets)
     ends = points[connectivity].astype(np.float64)
@@ -637,13 +702,20 @@ def line_halves(points: Array, connectivity: Indices, offsets: Indices, /) -> Ar
     line = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
     place = along[:-1]
     ahead, behind = along[offsets[1:]][line] - place, place - along[offsets[:-1]][line]
-    halves = np.zeros((len(connectivity), 2, 3))
-    halves[:, 0] = ahead[:, np.newaxis] * ways
+    halves = np.zeros((len(connectivity), 2, 4))
+    halves[:, 0, :3] = ahead[:, np.newaxis] * ways
     # The segment before a point begins at the point before it, of the same line.
     before = np.concatenate([np.zeros((1, 3)), ways[:-1]])
     before[offsets[:-1][np.diff(offsets) > 0]] = 0
-    halves[:, 1] = -behind[:, np.newaxis] * before
-    longest = np.zeros((len(points), 2, 3))
+    halves[:, 1, :3] = -behind[:, np.newaxis] * before
+    free = _free_ends(connectivity, offsets)
+    for side, tips in enumerate((offsets[1:] - 1, offsets[:-1])):
+        tip, half = tips[line], halves[:, side, :3]
+        with np.errstate(over="ignore", invalid="ignore"):
+            off = np.abs(ends[tip] - ends - half).max(axis=1, initial=0)
+            straight = off <= STRAIGHT * np.abs(half).max(axis=1, initial=0)
+        halves[:, side, 3] = free[tip] & straight
+    longest = np.zeros((len(points), 2, 4))
     # Of equal indices the last value stays: that of the longest line.
     order = np.argsort(ahead + behind, kind="stable")
     longest[connectivity[order]] = halves[order]
@@ -689,8 +761,9 @@ NARROWEST = 1e-6
 
 
 def depths(
-    middles: Array, vectors: Array, places: Array, lamp: VectorLike, thick: float = 0.0, /
-) -> tuple[Array, Array]:
+    middles: Array, vectors: Array, places: Array, lamp: VectorLike, thick: float = 0.0,
+    discs: Array | None = None, /,
+) -> tuple[Array, Array]:  # fmt: skip
     """Return the optical depth per diameter between points and a light nearby.
 
     The grid has the light in its centre: on each of the six faces of a cube around it, voxels are
@@ -708,6 +781,8 @@ def depths(
     thick : float, default: 0.0
         Diameter of the lines in voxels; the depth includes its factor for lines in one another's
         shadow.
+    discs : ndarray of float32, shape (M,), optional
+        As for :func:`voxel_depths`.
 
     Returns
     -------
@@ -727,10 +802,14 @@ def depths(
     # Width of a cone at distance 1: it grows to a voxel at the median distance of the pieces, or at
     # 1 where that is less.
     width = 1 / max(float(np.median(gone)), 1.0)
-    middles, vectors, share = _for_cones(middles - centre, vectors, width, thick)
+    discs = np.zeros(gone.size, np.float32) if discs is None else discs
+    middles, vectors, share, discs = _for_cones(middles - centre, vectors, width, thick, discs)
     gone = size(middles)
     # |w x t| times the length of a piece, for a direction w that differs from piece to piece.
-    across = share * size(np.cross(vectors, middles, axis=0)) / np.maximum(gone, NARROWEST)
+    across = size(np.cross(vectors, middles, axis=0))
+    last = np.flatnonzero(discs)
+    across[last] += discs[last] * np.abs((vectors[:, last] * middles[:, last]).sum(axis=0))
+    across *= share / np.maximum(gone, NARROWEST)
     # Lines crowd by their diameter in widths of the cones there, not in voxels.
     across *= crowding(thick / np.maximum(width * gone, NARROWEST))
     # As in a cube map the largest component tells through which face the light sees a point.
@@ -806,15 +885,16 @@ def crowding(thick: Array) -> Array:
 
 
 def _for_cones(
-    middles: Array, vectors: Array, width: float, thick: float
-) -> tuple[Array, Array, Array]:
-    """Return pieces cut again where cones from a light are narrower, and the share of each.
+    middles: Array, vectors: Array, width: float, thick: float, discs: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Return pieces cut again where cones from a light are narrower, the share of each, and discs.
 
     A piece is cut along its length, and into parallel pieces over the width of the line.
     """
     # No piece longer than a cone is wide where the piece comes nearest to the light.
     parts = _limited(size(vectors) / (width * _nearest(middles, vectors)))
     middles, vectors = cut(middles, vectors, parts)
+    discs = np.repeat(discs, parts)
     # Across both the line and the light: the direction in which the line shows its width.
     across = np.cross(vectors, middles, axis=0)
     reach = np.maximum(size(across), NARROWEST**2)
@@ -828,7 +908,8 @@ def _for_cones(
     parts = _limited(2 * thick * wider / (width * _nearest(middles, vectors)))
     middles, across = cut(middles, across, parts)
     # The parallel pieces share what the whole line takes from the light.
-    return middles, np.repeat(vectors, parts, axis=1), np.repeat(wider / parts, parts)
+    share = np.repeat(wider / parts, parts)
+    return middles, np.repeat(vectors, parts, axis=1), share, np.repeat(discs, parts)
 
 
 def _nearest(middles: Array, vectors: Array) -> Array:
