@@ -553,8 +553,8 @@ def test_a_title_is_the_name_of_a_file_and_no_word_of_a_reader(tmp_path):
 def test_the_neutral_colour_of_signed_values_is_at_0():
     mesh = ball(stress=lambda x, y, z: np.where(z > 0, 2, 1) * z, height=lambda x, y, z: 2 + z)
     for options, name, ends in (
-        ({}, "vizlight.bands", (-1, 1)),
-        ({"clim": (-3, 3)}, "vizlight.bands", (-3, 3)),
+        ({}, "coolwarm", (-1, 1)),
+        ({"clim": (-3, 3)}, "coolwarm", (-3, 3)),
         ({"clim": (-1, 3)}, "vizlight.surface", (-1, 3)),
         ({"cmap": "RdBu"}, "RdBu", (-1, 1)),
         ({"array": "height"}, "vizlight.surface", (1.5, 2.5)),
