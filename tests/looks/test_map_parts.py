@@ -295,6 +295,15 @@ def test_strokes_of_a_map_have_their_course():
     assert np.degrees(np.arctan2(*(end - start)[1::-1])) == pytest.approx(45, abs=0.1)
 
 
+@pytest.mark.parametrize("name", ["elevation", "posts"])
+def test_posts_are_heights_to_the_sky_though_they_have_two_values(name):
+    grid = pv.ImageData(dimensions=(20, 20, 1))
+    grid[name] = np.where(np.arange(400) % 37, 0.0, 3.0)
+    look = vizlight.look(grid, "sky", size=SIZE)
+    assert look.mesh["sky"].min() < 0.9
+    assert not look.others
+
+
 @pytest.mark.slow
 def test_a_relief_of_the_whole_earth_is_bent_once_it_is_lit(tmp_path):
     earth = chart(348, 168, west=-174.0, south=-84.0, name="elevation")

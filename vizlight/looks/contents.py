@@ -362,10 +362,11 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         return Named(name, "kinds", of_cells, 1, low, high) if len(finite) < len(sample) else None
     distinct = len(np.unique(finite))
     whole = high - low < MOST_SPAN and bool(np.all(finite == np.round(finite)))
-    if whole and (distinct <= meaning.MOST_KINDS or of_kinds or _are_labels(values)):
+    ground = _HEIGHTS.search(lower) and not _NO_GROUND.search(lower)
+    few = distinct <= meaning.MOST_KINDS and not (named and ground)
+    if whole and (few or of_kinds or _are_labels(values)):
         role: Role = "kinds"
     else:
-        ground = _HEIGHTS.search(lower) and not _NO_GROUND.search(lower)
         role = "heights" if ground else "values"
     return Named(name, role, of_cells, distinct, low, high)
 

@@ -754,6 +754,8 @@ _OF_FILTERS: dict[str, tuple[Recipe, tuple[Role, ...], bool]] = {
 }
 #: Those that a filter answers, whatever the data are.
 _FILTERS = tuple(name for name in _OF_FILTERS if name != "shadow")
+#: Those of which an array is no part.
+_WITHOUT_ARRAY = ("sky", "fur", "contours", "projection")
 
 
 def _is_height_field(contents: Contents, array: Named | None) -> bool:
@@ -795,7 +797,7 @@ def _others(contents: Contents, case: Case, drawn: str) -> tuple[Other, ...]:
     others = [
         Other(array.role, array.name, f"array={array.name!r}", f"--array {array.name}")
         for array in contents.arrays
-        if array.name != shown
+        if array.name != shown and case.question not in _WITHOUT_ARRAY
     ]
     if drawn == "isosurface":
         others.insert(0, Other("value", None, "question='value'", "--for value"))

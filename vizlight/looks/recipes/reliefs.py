@@ -13,6 +13,7 @@ from vizlight.looks.contents import says_heights
 from vizlight.looks.framing import Viewpoint
 from vizlight.looks.recipes.drawing import Drawing, Layer, colors_of, range_of, times_as_high
 from vizlight.looks.steps import Step
+from vizlight.mesh import height_grids
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -98,7 +99,9 @@ def shadow(case: Case) -> Drawing:
 
 def sky(case: Case) -> Drawing:
     """Draw the share of a uniform sky that each point sees."""
-    is_map = case.array is not None and case.contents.flat_axis == 2
+    # The filter takes the only array for heights, whatever its values look like.
+    has_heights = case.array is not None or bool(height_grids.heights_name(case.data.run()))
+    is_map = has_heights and case.contents.flat_axis == 2
     mesh = case.data if is_map or has_lines_only(case.data.run()) else case.surface
     camera = case.camera(mesh, ABOVE if is_map else None)
     scene = case.wishes.scene("none", camera)
