@@ -71,6 +71,9 @@ LONG_IN_VOLUME, SHORTEST = 5.0, 4
 WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.15
 #: Colours of the floor of a volume, and how far it is below the box as a share of its size.
 FLOOR, BELOW = {"paper": "#eeeeee", "dark": "#2c2c2c"}, 2e-3
+#: Colours and light of walls, which are pale: lines in colours are seen on them.
+WALLS = {"paper": "white", "dark": "#3a3d42"}
+WALL_LIGHT: Keywords = {"ambient": 0.72, "diffuse": 0.2, "smooth_shading": True}
 #: Words of the key for the sense of strokes.
 SENSE = "; arrows point downstream"
 #: Stroke lengths that strokes move in a movie where vectors are long.
@@ -314,7 +317,7 @@ def flow(case: Case) -> Drawing:
         ]
     layers = [lines]
     if case.map_frame is None:
-        layers += [*_hull(mesh), *_floor(case, box, camera), *case.boxed(box, camera)]
+        layers += [*_hull(case, mesh), *_floor(case, box, camera), *case.boxed(box, camera)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
 
 
@@ -435,12 +438,16 @@ def _left_out(lines: Step) -> int:
     return int(lines.run().field_data.get("left_out", [0])[0])
 
 
-def _hull(mesh: Step) -> list[Layer]:
-    """Return the layer of a faint hull of a volume, none for a box."""
+def _hull(case: Case, mesh: Step) -> list[Layer]:
+    """Return the layer of the inner sides of the hull of a volume, none for a box.
+
+    What the flow goes around is seen as a solid, and the walls toward the eye are left out.
+    """
     if isinstance(mesh.run(), pv.ImageData | pv.RectilinearGrid):
         return []
     hull = Step("hull", ".extract_surface", mesh, algorithm="dataset_surface")
-    return [Layer(hull, {"color": "gray", "opacity": 0.05, "lighting": False}, live=False)]
+    drawn = {"color": WALLS[case.wishes.style], "culling": "front", **WALL_LIGHT}
+    return [Layer(hull, drawn, live=False)]
 
 
 def _floor(case: Case, box: Step, camera: Step) -> list[Layer]:
