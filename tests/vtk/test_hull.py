@@ -285,7 +285,8 @@ def test_the_surface_of_many_cells_is_found_by_blocks(block, monkeypatch):
     monkeypatch.setattr(hull, "BLOCK", block)
     image = pv.ImageData(dimensions=(7, 9, 8))
     order = np.random.default_rng(0).permutation(image.n_cells)
-    for grid in (image.cast_to_unstructured_grid(), image.to_tetrahedra(5)):
+    hexahedra, tetrahedra = image.cast_to_unstructured_grid(), image.to_tetrahedra(5)
+    for grid in (hexahedra, tetrahedra, hexahedra.merge(tetrahedra.translate((6, 0, 0)))):
         for mesh in (grid, grid.extract_cells(order)):
             mesh["v"] = np.arange(mesh.n_points)
             mesh.point_data["n"] = np.asarray(mesh.points)

@@ -42,6 +42,7 @@ from vizlight.vtk.cells import (
     grid_cells,
     places,
     point_data,
+    types_of_cells,
 )
 
 Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
@@ -334,17 +335,22 @@ def outer_faces(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
     VTK's filter would take memory for each point and cell of the whole. Faces that two blocks have
     in common are none of its surface.
     """
+    solid_cells = mesh.GetCells() if isinstance(mesh, vtkUnstructuredGrid) else None
+    if solid_cells is None or solid_cells.GetNumberOfConnectivityIds() <= BLOCK:
+        return _numbered_surface(mesh)
     hidden = mesh.GetPointData().HasArray(GHOSTS) or mesh.GetCellData().HasArray(GHOSTS)
-    kind, *others = sorted(cell_types(mesh)) or [_POLYHEDRON]
-    if not isinstance(mesh, vtkUnstructuredGrid) or hidden or others or kind == _POLYHEDRON:
+    kinds = cell_types(mesh)
+    if hidden or is_curved(mesh) or _POLYHEDRON in kinds or {*map(_dimension, kinds)} != {SOLID}:
         return _numbered_surface(mesh)
-    size = mesh.GetCells().IsHomogeneous()
-    if size < 0 or size * mesh.GetNumberOfCells() <= BLOCK:
-        return _numbered_surface(mesh)
-    ids = as_numpy(mesh.GetCells().GetConnectivityArray())
+    count, size = solid_cells.GetNumberOfCells(), solid_cells.IsHomogeneous()
+    ids, types = as_numpy(solid_cells.GetConnectivityArray()), as_numpy(types_of_cells(mesh))
+    offsets = as_numpy(solid_cells.GetOffsetsArray()) if size < 0 else np.zeros(0, np.intp)
     corners, ends, solids = np.zeros(0, np.intp), np.zeros(1, np.intp), np.zeros(0, np.intp)
-    for block in _pool.blocks(mesh.GetNumberOfCells(), BLOCK // size):
-        some = ids[size * block.start : size * block.stop]
+    for block in _pool.blocks(count, max(BLOCK * count // len(ids), 1)):
+        bounds = np.arange(block.start, block.stop + 1) * size
+        if size < 0:
+            bounds = offsets[block.start : block.stop + 1]
+        some = ids[bounds[0] : bounds[-1]]
         low, high = int(some.min()), int(some.max()) + 1
         # Neighbouring cells mostly have neighbouring points.
         own, number = np.arange(low, high), some - low
@@ -352,9 +358,9 @@ def outer_faces(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
             own, number = np.unique(some, return_inverse=True)
         points, cells, part = vtkPoints(), vtkCellArray(), vtkUnstructuredGrid()
         points.SetData(as_vtk(places(mesh)[own]))
-        cells.SetData(size, as_vtk(number.astype(np.int32)))
+        cells.SetData(*(as_vtk(rows.astype(np.int32)) for rows in (bounds - bounds[0], number)))
         part.SetPoints(points)
-        part.SetCells(kind, cells)
+        part.SetCells(as_vtk(types[block]), cells)
         surface, origin, solid = _numbered_surface(part)
         more, stops = connectivity(surface.GetPolys())
         corners = np.concatenate([corners, own[origin[more]]])
