@@ -300,13 +300,23 @@ def test_points_that_repeat_along_single_segments_have_the_tangent_of_the_whole(
 MATRIX = np.array([[0.8, -0.6, 0, 3], [0.6, 0.8, 0, -1], [0, 0.3, 2, 0], [0, 0, 0, 1.0]])
 
 
-@pytest.mark.parametrize("make", [flow, scan, lambda: curls(20, 3, 30)])
-def test_a_large_mesh_is_moved_near_the_places_that_are_read(make, monkeypatch):
+def curls_with_vectors():
+    lines = curls(20, 3, 30)
+    lines["V"] = np.random.default_rng(2).normal(size=(lines.n_points, 3))
+    return lines
+
+
+@pytest.mark.parametrize(
+    ("make", "lit"),
+    [(flow, True), (scan, True), (scan, False), (lambda: curls(20, 3, 30), True),
+     (curls_with_vectors, True)],
+)  # fmt: skip
+def test_a_large_mesh_is_moved_near_the_places_that_are_read(make, lit, monkeypatch):
     mesh, chosen = make(), np.array([3, 20])
     light = LightOptions(tangents="V" if "V" in mesh.array_names else None)
-    whole = samples.part_on(mesh, SCENE, light, matrix=MATRIX)
+    whole = samples.part_on(mesh, SCENE, light, matrix=MATRIX, lit=lit)
     monkeypatch.setattr(samples, "WHOLE", 0)
-    part = samples.part_on(mesh, SCENE, light, matrix=MATRIX)
+    part = samples.part_on(mesh, SCENE, light, matrix=MATRIX, lit=lit)
     assert part.mesh is mesh
     expected = np.asarray(whole.drawn.points[:])
     np.testing.assert_allclose(part.drawn.points[:], expected, atol=1e-6)

@@ -237,7 +237,7 @@ class SeenMesh:
     large : bool
         Whether tangents and normals are made near the places that are read.
     matrix : ndarray, shape (4, 4), or None
-        Place of a large mesh, which is not moved as a whole.
+        Place of a mesh that is not moved as a whole.
     """
 
     kind: Kind
@@ -445,10 +445,17 @@ def part_on(
     # Shares of light that reach a place are the picture's to show, and not of the key.
     light = dataclasses.replace(options, occlusion=None, bundle=False)
     lit = more.get("lit", True)
+    placed = False
     if large := _made_near(mesh, cells, light, lit=lit):
         points = points_of(mesh, options.positions)
         points = points if options.positions else _moved_points(points, matrix)
         inputs = ShadingInputs(points=points)
+    elif placed := _moves_by_rows(mesh, light, kind, matrix, lit=lit):
+        inputs = _inputs(mesh, path, scene, light, kind, lit=lit)
+        points, tangents = _moved_points(inputs.points, matrix), inputs.tangents
+        if tangents is not None:
+            tangents = _moved_points(tangents, _linear(matrix))
+        inputs = dataclasses.replace(inputs, points=points, tangents=tangents)
     else:
         mesh, light = moved(mesh, light, matrix)
         inputs = _inputs(mesh, path, scene, light, kind, lit=lit)
@@ -458,7 +465,7 @@ def part_on(
     return SeenMesh(
         kind=kind, mesh=mesh, cells=cells, inputs=inputs, options=exact, scene=scene, light=light,
         path=path, glyph=_glyphs(mesh, cells) if is_glyphs else None, large=large,
-        matrix=matrix if large else None, values=values, flat=flat, **more,
+        matrix=matrix if large or placed else None, values=values, flat=flat, **more,
     )  # fmt: skip
 
 
@@ -507,6 +514,27 @@ def moved(
             rows = np.asarray(mesh.point_data[array] if isinstance(array, str) else array)
             turned[name] = (rows.reshape(-1, 3) @ matrix_of_rows).reshape(rows.shape)
     return placed, dataclasses.replace(options, **turned)
+
+
+def _moves_by_rows(
+    mesh: pv.DataSet, light: LightOptions, kind: Kind, matrix: Array | None, *, lit: bool
+) -> bool:
+    """Return whether a matrix moves the points of many lines or points, and vectors that it has."""
+    if matrix is None or mesh.n_points <= WHOLE or light.positions is not None or light.conditioned:
+        return False
+    if light.tangents is None:
+        return kind == "point" and not lit
+    rows = mesh.point_data.get(light.tangents) if isinstance(light.tangents, str) else None
+    return kind == "line" and rows is not None and rows.shape[1:] == (3,)
+
+
+def _linear(matrix: Array | None) -> Array | None:
+    """Return a matrix without its shift."""
+    if matrix is None:
+        return None
+    linear = np.eye(4)
+    linear[:3, :3] = matrix[:3, :3]
+    return linear
 
 
 def _moved_points(points: ArraySource, matrix: Array | None) -> ArraySource:
