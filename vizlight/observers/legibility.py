@@ -96,7 +96,8 @@ def legibility(
         Name of a point array of 3 or 6 components, or its values, as for
         :func:`vizlight.illuminate`.
     scalars : str or array_like, optional
-        Array of values that colour the picture, as for :func:`vizlight.tint`. Default: none.
+        Array of values that colour the picture, as for :func:`vizlight.tint`, but of cells each has
+        one colour. Default: none.
     cmap : str, list, matplotlib colormap or pyvista.LookupTable, optional
         Colour map of the values. Default: as for :func:`vizlight.tint`.
     clim : (float, float) or float, optional
