@@ -1,5 +1,7 @@
 """A curved sheet with a field, and small pictures of it, for tests of the meter."""
 
+import re
+
 import numpy as np
 import pyvista as pv
 
@@ -67,3 +69,10 @@ def drawn_plain(mesh, **how):
 def seen_as(colors):
     """Return a picture that is seen in colours of CIELAB, all of which is drawn."""
     return SeenPicture(xyz_of_lab(colors) @ OPPONENT.T, np.ones_like(colors), np.zeros(3))
+
+
+def counts(found):
+    """Return how many answers of two sides are right and wrong, also where they are chance."""
+    if found.unreadable:
+        return tuple(map(int, re.search(r"(\d+) right and (\d+) wrong", found.reason).groups()))
+    return round(found.told * found.samples), round(found.wrongly * found.samples)

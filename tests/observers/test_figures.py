@@ -93,6 +93,6 @@ def test_figures_are_left_out_with_their_scale():
 def test_the_finest_structure_is_a_length(pixels, length, text):
     scale = Scale(question="value", pixels=pixels, length=length, median=33.0)
     assert scale.rows() == [
-        ("finest structure read of value", text, ""),
+        ("finest structure read of value", text, "none"),
         ("median structure", "33 pixels", ""),
     ]

@@ -91,6 +91,8 @@ def test_an_empty_picture_says_chance_and_why_of_all_questions():
     for name in ("direction", "heading", "shape", "value"):
         assert found[name].median == found[name].chance
     assert found["slope"].spearman == found["speed"].spearman == 0
+    for figure in (found["order"], found["sense"]):
+        assert figure.told == figure.wrongly == figure.chance
 
 
 @pytest.mark.parametrize("tilt", [0, 15, 30, 45, 60, 75])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
-from sheets import arrows, drawn_plain, rings, seen_as, sheet
+from sheets import arrows, counts, drawn_plain, rings, seen_as, sheet
 
 import vizlight
 from vizlight.draw.cameras import camera_on
@@ -101,7 +101,8 @@ def test_strokes_whose_ends_differ_tell_their_sense(radius, color):
 def test_plain_strokes_tell_no_sense():
     found = sense(strokes(), *drawn(strokes(), even, black))
     assert found.unreadable
-    assert found.told < 0.2
+    assert found.told == found.wrongly == 0.5
+    assert counts(found)[0] < 0.2 * found.samples
     assert found.readable == 0
     assert "tapered" in found.reason
 
@@ -112,7 +113,7 @@ def test_tapers_of_which_half_run_against_the_data_tell_no_sense():
     mesh["IntegrationTime"][120:] *= -1
     found = sense(mesh, *picture)
     assert found.bits < 0.05
-    assert found.told == pytest.approx(0.5, abs=0.05)
+    assert counts(found)[0] == pytest.approx(found.samples / 2, abs=1)
     assert "wrongly" in found.reason
 
 
@@ -264,8 +265,9 @@ def test_glyphs_tell_course_and_speed_and_sense_by_their_heads(geom, told):
     found = read(glyphs, *drawn_plain(glyphs, line_width=2), line_width=2)
     assert found.direction.median < 5
     assert found.speed.spearman > 0.9
-    assert (found.sense.told > 0.3) == bool(told)
-    assert found.sense.wrongly == 0
+    right, wrong = counts(found.sense)
+    assert (right > 0.3 * found.sense.samples) == bool(told)
+    assert wrong == 0
 
 
 def test_a_wide_glyph_is_read_as_a_whole():
@@ -279,9 +281,10 @@ def test_glyphs_that_point_the_other_way_are_told_wrongly():
     back["swirl"] *= -1
     glyphs = arrows(mesh)
     ahead, found = (read(glyphs, *drawn_plain(arrows(one))) for one in (mesh, back))
-    assert ahead.sense.told == pytest.approx(found.sense.wrongly, abs=0.05)
-    assert ahead.sense.told > 0.8
-    assert max(ahead.sense.wrongly, found.sense.told) < 0.05
+    (right, few), (others, wrong) = counts(ahead.sense), counts(found.sense)
+    assert right == pytest.approx(wrong, abs=0.05 * found.sense.samples)
+    assert right > 0.8 * ahead.sense.samples
+    assert max(few, others) < 0.05 * found.sense.samples
     assert found.sense.unreadable
     assert found.direction.median < 3
     # Glyphs of one length tell no speed, but by their colour.

@@ -17,6 +17,7 @@ from sheets import (
     HOW,
     SHAPE,
     SIZE,
+    counts,
     plotter_of,
     rings,
     sheet,
@@ -259,7 +260,9 @@ def test_a_figure_of_two_sides_counts_right_and_wrong_answers():
     assert found.readable == pytest.approx(0.7)
     assert not found.unreadable
     assert "alike" in measure._order(np.repeat([1, 0], [3, 7])).reason
-    assert "wrongly" in measure._order(np.repeat([1, -1, 0], [3, 2, 5])).reason
+    chance = measure._order(np.repeat([1, -1, 0], [3, 2, 5]))
+    assert "wrongly, 3 right and 2 wrong of 10;" in chance.reason
+    assert (chance.told, chance.wrongly, chance.readable) == (0.5, 0.5, 0)
     assert measure._order(np.zeros(0)) is None
 
 
@@ -278,7 +281,7 @@ def test_ends_of_strokes_differ_by_three_deviations_of_the_noise():
     ink = np.array([7.0] * 7 + [6.8, -7.0, 0.0])
     answers = measure._of_strokes(ink, 0 * ink, 2.3)
     found = measure._sense(answers)
-    assert (found.told, found.wrongly) == (0.7, 0.1)
+    assert counts(found) == (7, 1)
     np.testing.assert_array_equal(measure._of_strokes(0 * ink, -ink, 2.3), answers)
     assert measure._sense(answers[:7]) is None
     assert measure._sense(answers[:8]) is not None

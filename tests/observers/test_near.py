@@ -225,15 +225,44 @@ def test_normals_of_points_of_a_scan_are_those_of_the_whole(monkeypatch):
     assert samples.part_on(mesh, SCENE, LightOptions()).inputs.normals is not None
 
 
-def test_many_solid_cells_are_split_on_their_surface_unless_their_cells_are_colored(monkeypatch):
+def test_many_solid_cells_are_split_on_their_surface_with_the_colours_of_their_cells(monkeypatch):
     monkeypatch.setattr(legibility, "WHOLE", 0)
     ball = pv.SolidSphere(theta_resolution=20, phi_resolution=20, radius_resolution=3)
     ball.clear_data()
     ball.cell_data["c"] = np.arange(ball.n_cells)
     smooth = LightOptions(feature_angle=None)
-    assert isinstance(legibility._split(ball, smooth, None), pv.PolyData)
-    # Means of cells are those of all around a point, inside too.
-    assert legibility._split(ball, smooth, "c") is ball
+    split = legibility._split(ball, smooth)
+    assert isinstance(split, pv.PolyData)
+    surface = ball.extract_surface(algorithm="geometry")
+    assert dict(zip(map(tuple, split.cell_centers().points), split["c"], strict=True)) == dict(
+        zip(map(tuple, surface.cell_centers().points), surface["c"], strict=True)
+    )
+
+
+@pytest.mark.parametrize("whole", [0, samples.WHOLE])
+def test_colours_of_cells_go_with_their_faces_and_lines(whole, monkeypatch):
+    monkeypatch.setattr(samples, "WHOLE", whole)
+    image = pv.ImageData(dimensions=(4, 3, 5))
+    lines = pv.PolyData()
+    lines.points = np.random.default_rng(0).random((9, 3))
+    lines.verts, lines.lines = [1, 0], [4, 0, 1, 2, 3, 3, 4, 5, 6, 2, 7, 8]
+    for mesh in (image, image.cast_to_unstructured_grid(), image.to_tetrahedra(5), lines):
+        middles = np.asarray(mesh.cell_centers().points)
+        values = middles @ (1.0, 10.0, 100.0)
+        part = samples.part_on(mesh, SCENE, LightOptions(), values=values, flat=True, lit=False)
+        found = part.near(np.arange(len(part.cells)))
+        points = part.inputs.points[:][part.cells[:]]
+        for corners, value in zip(points, found.values, strict=True):
+            cell = np.asarray(mesh.get_cell(int(np.flatnonzero(values == value)[0])).points)
+            for corner in corners:
+                assert np.abs(cell - corner).sum(axis=1).min() == 0
+    # Cells of no surface have the means at their points.
+    cloud = pv.PolyData(lines.points)
+    part = samples.part_on(
+        cloud, SCENE, LightOptions(), values=np.arange(9.0), flat=True, lit=False
+    )
+    assert not part.flat
+    np.testing.assert_array_equal(part.values, np.arange(9.0))
 
 
 def test_tangents_of_single_segments_are_those_of_the_joined_lines(monkeypatch):
@@ -271,13 +300,23 @@ def test_points_that_repeat_along_single_segments_have_the_tangent_of_the_whole(
 MATRIX = np.array([[0.8, -0.6, 0, 3], [0.6, 0.8, 0, -1], [0, 0.3, 2, 0], [0, 0, 0, 1.0]])
 
 
-@pytest.mark.parametrize("make", [flow, scan, lambda: curls(20, 3, 30)])
-def test_a_large_mesh_is_moved_near_the_places_that_are_read(make, monkeypatch):
+def curls_with_vectors():
+    lines = curls(20, 3, 30)
+    lines["V"] = np.random.default_rng(2).normal(size=(lines.n_points, 3))
+    return lines
+
+
+@pytest.mark.parametrize(
+    ("make", "lit"),
+    [(flow, True), (scan, True), (scan, False), (lambda: curls(20, 3, 30), True),
+     (curls_with_vectors, True)],
+)  # fmt: skip
+def test_a_large_mesh_is_moved_near_the_places_that_are_read(make, lit, monkeypatch):
     mesh, chosen = make(), np.array([3, 20])
     light = LightOptions(tangents="V" if "V" in mesh.array_names else None)
-    whole = samples.part_on(mesh, SCENE, light, matrix=MATRIX)
+    whole = samples.part_on(mesh, SCENE, light, matrix=MATRIX, lit=lit)
     monkeypatch.setattr(samples, "WHOLE", 0)
-    part = samples.part_on(mesh, SCENE, light, matrix=MATRIX)
+    part = samples.part_on(mesh, SCENE, light, matrix=MATRIX, lit=lit)
     assert part.mesh is mesh
     expected = np.asarray(whole.drawn.points[:])
     np.testing.assert_allclose(part.drawn.points[:], expected, atol=1e-6)

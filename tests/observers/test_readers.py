@@ -153,6 +153,10 @@ def test_a_reader_who_allows_for_light_reads_dimmed_hues(lit, dim):
     assert (np.quantile(reading.error, 0.95) < 0.04) == (lit or dim == 1)
     gray = readers.light_of(seen, table).lab
     np.testing.assert_allclose(gray[:, 0], lab(np.full(3, dim))[0], atol=3)
+    # No light makes colours brighter than they are.
+    white = Colors(np.array([[100.0, 0, 0]]), seen.deviation[:1])
+    gray = readers.light_of(white, bar([200, 200, 200], [100, 100, 100])).lab
+    np.testing.assert_allclose(gray, [[100, 0, 0]], atol=0.1)
 
 
 def test_light_on_a_gray_bar_leaves_the_value_open():

@@ -11,7 +11,7 @@ from vtkmodules.vtkRenderingLICOpenGL2 import vtkSurfaceLICMapper
 import vizlight
 from vizlight.draw.cameras import camera_on
 from vizlight.observers.samples import moved
-from vizlight.observers.whole import read_picture, reading
+from vizlight.observers.whole import read_picture, reading, shown_by
 from vizlight.shading.options import LightOptions
 
 pytestmark = pytest.mark.opengl
@@ -219,7 +219,45 @@ def test_quadrilaterals_are_read_as_they_are_drawn(place):
     data = getattr(mesh, place)
     data["v"] = np.random.default_rng(0).random(mesh.n_points if "p" in place else mesh.n_cells)
     # Grays, which the eye mixes with those beside them less than hues.
-    assert read_plain(mesh, scalars="v", cmap="gray").value.median < 0.04
+    how = {"scalars": "v", "cmap": "gray"}
+    for shown in (mesh, mesh.cast_to_unstructured_grid()):
+        assert read_plain(shown, **how).value.median < 0.04
+    plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
+    plotter.add_mesh(mesh, lighting=False, show_scalar_bar=False, **how)
+    plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
+    picture = plotter.screenshot()
+    plotter.close()
+    key = ("gray", mesh.get_data_range("v"))
+    found = vizlight.legibility(
+        mesh, picture=picture, camera=plotter.camera, scalars="v", key=key, **HOW
+    )
+    assert found.value.median < 0.04
+
+
+def test_a_component_is_read_as_it_is_drawn():
+    mesh = pv.Plane(i_resolution=40, j_resolution=40)
+    x, y = np.asarray(mesh.points)[:, :2].T
+    mesh["V"] = np.stack([np.sin(5 * x), 2 * np.cos(4 * y), 0 * x], axis=1)
+    mesh["x"] = mesh["V"][:, 0].copy()
+    found = []
+    for how in ({"scalars": "V", "component": 0}, {"scalars": "x"}):
+        plotter, _ = plotter_of(mesh, scene=vizlight.presets.shape(), **how)
+        found.append(plotter.vizlight.legibility(**HOW).value)
+        plotter.close()
+    assert found[0].bits == pytest.approx(found[1].bits, rel=0.01)
+    assert found[0].median < 0.05
+
+
+def test_colours_that_were_averaged_to_points_are_read_there():
+    mesh = pv.Plane(i_resolution=6, j_resolution=4)
+    mesh.cell_data["v"] = np.random.default_rng(0).random(mesh.n_cells)
+    plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
+    with pytest.warns(UserWarning, match="averaged from cells to points"):
+        plotter.vizlight.add_mesh(mesh, scene=vizlight.presets.shape(), scalars="v", light="points")
+    part = shown_by(plotter.renderer, plotter.vizlight._live_of).parts[0]
+    plotter.close()
+    assert not part.flat
+    np.testing.assert_allclose(part.values, mesh.cell_data_to_point_data()["v"], rtol=1e-6)
 
 
 def test_a_point_is_as_wide_as_it_is_drawn():

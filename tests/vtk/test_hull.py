@@ -280,23 +280,28 @@ def test_curved_cells_beside_others_face_outward_and_keep_the_active_array(kind,
     assert all(outward)
 
 
-@pytest.mark.parametrize("block", [40, 333, 1 << 20])
+@pytest.mark.parametrize("block", [160, 1500, 1 << 20])
 def test_the_surface_of_many_cells_is_found_by_blocks(block, monkeypatch):
     monkeypatch.setattr(hull, "BLOCK", block)
     image = pv.ImageData(dimensions=(7, 9, 8))
     order = np.random.default_rng(0).permutation(image.n_cells)
-    for grid in (image.cast_to_unstructured_grid(), image.to_tetrahedra(5)):
+    hexahedra, tetrahedra = image.cast_to_unstructured_grid(), image.to_tetrahedra(5)
+    for grid in (hexahedra, tetrahedra, hexahedra.merge(tetrahedra.translate((6, 0, 0)))):
         for mesh in (grid, grid.extract_cells(order)):
             mesh["v"] = np.arange(mesh.n_points)
             mesh.point_data["n"] = np.asarray(mesh.points)
             mesh.point_data.active_normals_name = "n"
             found, whole = (
                 {tuple(origin[face]) for face in pv.wrap(surface).irregular_faces}
-                for surface, origin in (hull.outer_points(mesh), hull.outer_surface(mesh))
+                for surface, origin, *_ in (hull.outer_faces(mesh), hull.outer_surface(mesh))
             )
             # The first corner counts: quadrilaterals are halved from it.
             assert found == whole
-            surface, origin = hull.outer_points(mesh)
+            mesh.cell_data["c"] = np.arange(mesh.n_cells)
+            surface, origin, cells = hull.outer_faces(mesh)
+            np.testing.assert_array_equal(pv.wrap(surface).cell_data["c"], cells)
+            for face, cell in zip(pv.wrap(surface).irregular_faces, cells, strict=True):
+                assert set(origin[face]) <= set(mesh.get_cell(int(cell)).point_ids)
             surface = pv.wrap(surface)
             np.testing.assert_array_equal(surface["v"], origin)
             np.testing.assert_array_equal(surface.points, mesh.points[origin])

@@ -94,8 +94,10 @@ class Live:
         #: Name of the drawn array that gives the colours, and of the one it is made of, or None.
         self.scalars: str | None = None
         self.given: str | None = None
-        self._component: int | None = None
-        self._averaged = False
+        #: Component of that array that is coloured, None for one number or for lengths.
+        self.component: int | None = None
+        #: Whether its values are of cells and were averaged to the points.
+        self.averaged = False
         self._changed = source.mesh.GetMTime()
         self._state: tuple[object, ...] = ()
         self._placed: tuple[tuple[float, ...], ShadingInputs] | None = None
@@ -137,20 +139,20 @@ class Live:
         TypeError, ValueError
             If the mesh has no such array.
         """
-        self.given, self._component = scalars, component
+        self.given, self.component = scalars, component
         self.scalars = scalars
-        self._averaged = bool(self.reason) and is_of_cells(self.source.mesh, scalars)
-        if self._averaged:
+        self.averaged = bool(self.reason) and is_of_cells(self.source.mesh, scalars)
+        if self.averaged:
             _check.warn(f"the colours of {scalars!r} are averaged from cells to points")
         self._color(self._values())
 
     def _values(self) -> Raw | None:
         """Return the values that are coloured; None for an array of the mesh as it is."""
         mesh, name = self.source.mesh, self.given
-        if name is None or (is_of_cells(mesh, name) and not self._averaged):
+        if name is None or (is_of_cells(mesh, name) and not self.averaged):
             return None
-        values = values_of(mesh, name, self._component)
-        return values if self._averaged or mesh.point_data[name].ndim > 1 else None
+        values = values_of(mesh, name, self.component)
+        return values if self.averaged or mesh.point_data[name].ndim > 1 else None
 
     def _color(self, values: Raw | None) -> None:
         """Attach the values that are coloured, unless they are an array of the mesh."""
@@ -165,7 +167,7 @@ class Live:
 
     def has_colors(self) -> bool:
         """Return whether the array that is drawn holds colours, not values."""
-        return self._component is None and are_colors(self.shown_values())
+        return self.component is None and are_colors(self.shown_values())
 
     def lacks_values(self) -> bool:
         """Return whether any of the values that are coloured is NaN."""

@@ -197,12 +197,16 @@ def _holds_light(meshes: Sequence[pv.DataSet], name: str) -> bool:
 
 
 def values_of(
-    mesh: pv.DataSet, scalars: str | ArrayLike | None, component: int | None = None
+    mesh: pv.DataSet,
+    scalars: str | ArrayLike | None,
+    component: int | None = None,
+    *,
+    flat: bool = False,
 ) -> Raw:
     """Return the values that are coloured, one per point, or bytes that are colours already.
 
-    Whole numbers of cells, which may be labels, are not averaged; see
-    :func:`vizlight.vtk.arrays.at_points`.
+    Values of cells stay one per cell if they are ``flat``. Else whole numbers, which may be labels,
+    are not averaged; see :func:`vizlight.vtk.arrays.at_points`.
     """
     if scalars is None:
         scalars = mesh.point_data.active_scalars_name
@@ -217,7 +221,7 @@ def values_of(
             array: Raw = np.asarray(mesh.point_data[scalars])
         elif scalars in mesh.cell_data:
             of_cells = np.asarray(mesh.cell_data[scalars])
-            moved = at_points(mesh, of_cells)
+            moved = None if flat else at_points(mesh, of_cells)
             array = of_cells if moved is None else moved
         else:
             names = _check.one_of([*mesh.point_data, *mesh.cell_data])
@@ -251,7 +255,11 @@ def values_of(
 
 
 def values_of_blocks(
-    meshes: Sequence[pv.DataSet], scalars: str | ArrayLike | None, component: int | None = None
+    meshes: Sequence[pv.DataSet],
+    scalars: str | ArrayLike | None,
+    component: int | None = None,
+    *,
+    flat: bool = False,
 ) -> list[Raw]:
     """Return the values that are coloured of each mesh, NaN for a mesh that lacks their array."""
     if not isinstance(scalars, str):
@@ -260,7 +268,7 @@ def values_of_blocks(
     # Where no mesh has it the error lists the arrays of the first.
     having[:1] = [having[0] or not any(having)] if having else []
     return [
-        values_of(mesh, scalars, component) if has else np.full(mesh.n_points, np.nan)
+        values_of(mesh, scalars, component, flat=flat) if has else np.full(mesh.n_points, np.nan)
         for mesh, has in zip(meshes, having, strict=True)
     ]
 

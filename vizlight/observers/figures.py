@@ -179,7 +179,8 @@ class TwoSided(Figure):
     Attributes
     ----------
     told : float
-        Share of the places at which the answer is right; 0.5 by chance, as ``wrongly``.
+        Share of the places at which the answer is right; 0.5 by chance, as ``wrongly``. Where the
+        question is unreadable the reason has the counts.
     wrongly : float
         Share at which it is wrong.
     """
@@ -214,7 +215,7 @@ class Scale:
     """Finest structure of the data that is still read.
 
     Structure is the length in the picture within which the data turn by 90 degrees, or go through
-    half of the range of the bar.
+    half of the range of the bar. By chance none is read.
 
     Attributes
     ----------
@@ -240,7 +241,7 @@ class Scale:
         if self.length is not None:
             finest += f", {self.length:.3g} of the unit"
         words = f"finest structure read of {self.question}"
-        return [(words, finest, ""), ("median structure", f"{self.median:.3g} pixels", "")]
+        return [(words, finest, "none"), ("median structure", f"{self.median:.3g} pixels", "")]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -27,7 +27,7 @@ from vizlight.scene.presets import required_scene
 from vizlight.scene.view import is_camera
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import is_of_cells
-from vizlight.vtk.hull import outer_points
+from vizlight.vtk.hull import outer_faces
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -96,7 +96,8 @@ def legibility(
         Name of a point array of 3 or 6 components, or its values, as for
         :func:`vizlight.illuminate`.
     scalars : str or array_like, optional
-        Array of values that colour the picture, as for :func:`vizlight.tint`. Default: none.
+        Array of values that colour the picture, as for :func:`vizlight.tint`, but of cells each has
+        one colour. Default: none.
     cmap : str, list, matplotlib colormap or pyvista.LookupTable, optional
         Colour map of the values. Default: as for :func:`vizlight.tint`.
     clim : (float, float) or float, optional
@@ -271,14 +272,12 @@ def _plotter(mesh: pv.DataSet | pv.MultiBlock, size: tuple[int, int]) -> pv.Plot
     return plotter
 
 
-def _split(mesh: pv.DataSet, options: LightOptions, scalars: str | None) -> pv.DataSet:
+def _split(mesh: pv.DataSet, options: LightOptions) -> pv.DataSet:
     """Return a mesh with split sharp edges unless it is large; of many solid cells the surface."""
     by_name = all(isinstance(x, str | None) for x in (options.tangents, options.normals))
-    # Means of cells are those of all around a point, inside too.
-    by_name &= scalars is None or not is_of_cells(mesh, scalars)
     many = isinstance(mesh, pv.UnstructuredGrid) and mesh.n_cells > WHOLE
     if many and by_name and is_solid(mesh, options):
-        mesh = pv.wrap(outer_points(mesh)[0])
+        mesh = pv.wrap(outer_faces(mesh)[0])
     return mesh if is_large(mesh) else with_sharp_edges(mesh, options)
 
 
@@ -311,7 +310,7 @@ def _parts(
     # Rows of values that are no array of the mesh do not fit points that are split.
     if lit and isinstance(scalars, str | None):
         # The edges of a large surface are looked for near the places that are read.
-        shown = [(_split(block, options, scalars), path) for block, path in shown]
+        shown = [(_split(block, options), path) for block, path in shown]
     else:
         options = smooth
     values: list[Raw | None] = [None] * len(shown)
@@ -319,7 +318,7 @@ def _parts(
     if bar is not None:
         if scalars is None:
             raise ValueError(_check.message("scalars", "the array that colours show", None))
-        some = values_of_blocks([block for block, _ in shown], scalars)
+        some = values_of_blocks([block for block, _ in shown], scalars, flat=True)
         table = color_table(some, cmap=bar[0], clim=bar[1])
         values = list(some)
     width = float(drawing.get("line_width", 1.0))
@@ -327,6 +326,7 @@ def _parts(
         part_on(
             block, scene.replace(view=view), options if is_large(block) else smooth, path,
             lit=lit, values=array, table=table, width=width,
+            flat=isinstance(scalars, str) and is_of_cells(block, scalars),
             diameter=stroke_of(block, {"line_width": width} | drawing).diameter,
         )
         for (block, path), array in zip(shown, values, strict=True)

@@ -26,6 +26,7 @@ from vizlight.observers.figures import (
     Shape,
     Slope,
     Speed,
+    TwoSided,
     Value,
 )
 from vizlight.observers.lines import (
@@ -417,19 +418,18 @@ def _sense(answers: Array) -> Sense | None:
 
 
 def _two_sided(answers: Array, remedy: str) -> Keywords:
-    """Return the figures of answers of two sides; shares are kept where they are unreadable."""
+    """Return the figures of answers of two sides; where they are chance the reason has counts."""
     right, wrong = int(np.count_nonzero(answers > 0)), int(np.count_nonzero(answers < 0))
     bits = two_sides(right, wrong, len(answers))
+    common = {"bits": bits, "samples": len(answers)}
+    if bits >= FLOOR:
+        told, wrongly = right / len(answers), wrong / len(answers)
+        return common | {"told": told, "wrongly": wrongly, "readable": told - wrongly}
     silent = right + wrong < len(answers) / 2
     why = "most places look alike on both sides" if silent else "too many places tell it wrongly"
-    return {
-        "told": right / len(answers),
-        "wrongly": wrong / len(answers),
-        "bits": bits,
-        "readable": 0.0 if bits < FLOOR else (right - wrong) / len(answers),
-        "samples": len(answers),
-        "reason": f"{why}; {remedy}" if bits < FLOOR else "",
-    }
+    reason = f"{why}, {right} right and {wrong} wrong of {len(answers)}; {remedy}"
+    shares = dict.fromkeys(("told", "wrongly"), TwoSided.chance)
+    return common | shares | {"readable": 0.0, "reason": reason}
 
 
 class _PictureReader:

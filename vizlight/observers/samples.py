@@ -26,7 +26,7 @@ from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.verify.between import Places, interpolated, mean_spaces
 from vizlight.vtk import hull
-from vizlight.vtk.arrays import MadePoints, is_of_cells, points_of
+from vizlight.vtk.arrays import MadePoints, at_points, is_of_cells, points_of
 from vizlight.vtk.drawn import DrawnCells, DrawnPoints, DrawnSegments, DrawnTriangles
 from vizlight.vtk.hull import SOLID
 from vizlight.vtk.normals import is_scan
@@ -223,7 +223,7 @@ class SeenMesh:
     values : ndarray, shape (N,), or None
         Values of the points that colours show; of the cells if they are flat.
     flat : bool
-        Whether the colours of a cell are one.
+        Whether each cell has one colour.
     table : pyvista.LookupTable or None
         Colours of the values.
     width : float
@@ -237,7 +237,7 @@ class SeenMesh:
     large : bool
         Whether tangents and normals are made near the places that are read.
     matrix : ndarray, shape (4, 4), or None
-        Place of a large mesh, which is not moved as a whole.
+        Place of a mesh that is not moved as a whole.
     """
 
     kind: Kind
@@ -300,13 +300,13 @@ class SeenMesh:
         """Return the mesh with some of the cells alone, and with all inputs at their points."""
         values = self.values
         if values is not None and self.flat:
-            assert isinstance(self.cells, DrawnTriangles)
+            assert isinstance(self.cells, DrawnCells)
             values = values[self.cells.cells(cells)]
         corners = self.cells[cells]
         if not self.large:
             return dataclasses.replace(self, cells=corners, values=values)
         if isinstance(self.cells, DrawnSegments):
-            return self._near_lines(self.cells, cells)
+            return self._near_lines(self.cells, cells, values)
         if isinstance(self.cells, DrawnTriangles):
             around = near(self.mesh, self.cells, cells, self.light)
             mesh, light = moved(around.mesh, around.light, self.matrix)
@@ -320,7 +320,7 @@ class SeenMesh:
             self, mesh=mesh, cells=around.corners, inputs=inputs, values=values, matrix=None
         )
 
-    def _near_lines(self, lines: DrawnSegments, cells: Indices) -> SeenMesh:
+    def _near_lines(self, lines: DrawnSegments, cells: Indices, values: Raw | None) -> SeenMesh:
         """Return some segments with their points alone, and the tangents at these."""
 
         def tangents_of(mesh: pv.PolyData) -> Array:
@@ -335,7 +335,7 @@ class SeenMesh:
             tangents=tangents_at(self.mesh, lines, points, tangents_of),
             line_field=self.light.line_field,
         )
-        values = None if self.values is None else self.values[points]
+        values = values if values is None or self.flat else values[points]
         corners = corners.reshape(-1, lines.shape[1])
         return dataclasses.replace(self, cells=corners, inputs=inputs, values=values)
 
@@ -393,6 +393,8 @@ def part_on(
     options: LightOptions,
     path: str = "",
     *,
+    values: Raw | None = None,
+    flat: bool = False,
     matrix: Array | None = None,
     **more: Given,
 ) -> SeenMesh:
@@ -408,6 +410,10 @@ def part_on(
         How the mesh is lit.
     path : str, optional
         Name of the mesh among others, for errors.
+    values : ndarray, optional
+        Values that colours show, one for each point, or for each cell if they are ``flat``.
+    flat : bool, default: False
+        Whether each cell has one colour.
     matrix : ndarray, shape (4, 4), optional
         Place of the mesh.
     **more
@@ -422,13 +428,15 @@ def part_on(
     if is_glyphs:
         more["lit"] = False
     elif is_solid(mesh, options):
-        mesh, options, values = _on_surface(mesh, options, more.get("values"))
-        more |= {"values": values}
+        mesh, options, values = _on_surface(mesh, options, values, flat=flat)
     if matrix is not None and np.array_equal(matrix, np.eye(4)):
         matrix = None
     # A key has no depth by which a cue could fade it.
     scene = scene.replace(depth_cue=None)
     drawn = DrawnTriangles.of(mesh) or DrawnSegments.of(mesh)
+    if flat and drawn is None and values is not None:
+        # Cells that are curved, hidden, or points.
+        values, flat = at_points(mesh, values), False
     cells: Indices | DrawnCells | DrawnPoints
     cells = subdivision.simplices(mesh) if drawn is None else drawn
     kind: Kind = "surface" if cells.shape[1] == 3 else "line"
@@ -437,10 +445,17 @@ def part_on(
     # Shares of light that reach a place are the picture's to show, and not of the key.
     light = dataclasses.replace(options, occlusion=None, bundle=False)
     lit = more.get("lit", True)
+    placed = False
     if large := _made_near(mesh, cells, light, lit=lit):
         points = points_of(mesh, options.positions)
         points = points if options.positions else _moved_points(points, matrix)
         inputs = ShadingInputs(points=points)
+    elif placed := _moves_by_rows(mesh, light, kind, matrix, lit=lit):
+        inputs = _inputs(mesh, path, scene, light, kind, lit=lit)
+        points, tangents = _moved_points(inputs.points, matrix), inputs.tangents
+        if tangents is not None:
+            tangents = _moved_points(tangents, _linear(matrix))
+        inputs = dataclasses.replace(inputs, points=points, tangents=tangents)
     else:
         mesh, light = moved(mesh, light, matrix)
         inputs = _inputs(mesh, path, scene, light, kind, lit=lit)
@@ -450,21 +465,21 @@ def part_on(
     return SeenMesh(
         kind=kind, mesh=mesh, cells=cells, inputs=inputs, options=exact, scene=scene, light=light,
         path=path, glyph=_glyphs(mesh, cells) if is_glyphs else None, large=large,
-        matrix=matrix if large else None, **more,
+        matrix=matrix if large or placed else None, values=values, flat=flat, **more,
     )  # fmt: skip
 
 
 def _on_surface(
-    mesh: pv.DataSet, options: LightOptions, values: Raw | None
+    mesh: pv.DataSet, options: LightOptions, values: Raw | None, *, flat: bool
 ) -> tuple[pv.DataSet, LightOptions, Raw | None]:
     """Return the outer surface of a mesh with its rows of arrays, options and values."""
-    surface, origin = hull.outer_points(mesh)
+    surface, origin, cells = hull.outer_faces(mesh)
     given: Keywords = {
         name: np.asarray(rows)[origin]
         for name in ("tangents", "normals")
         if not isinstance(rows := getattr(options, name), str | None)
     }
-    values = values if values is None else values[origin]
+    values = values if values is None else values[cells if flat else origin]
     return pv.wrap(surface), dataclasses.replace(options, **given), values
 
 
@@ -499,6 +514,27 @@ def moved(
             rows = np.asarray(mesh.point_data[array] if isinstance(array, str) else array)
             turned[name] = (rows.reshape(-1, 3) @ matrix_of_rows).reshape(rows.shape)
     return placed, dataclasses.replace(options, **turned)
+
+
+def _moves_by_rows(
+    mesh: pv.DataSet, light: LightOptions, kind: Kind, matrix: Array | None, *, lit: bool
+) -> bool:
+    """Return whether a matrix moves the points of many lines or points, and vectors that it has."""
+    if matrix is None or mesh.n_points <= WHOLE or light.positions is not None or light.conditioned:
+        return False
+    if light.tangents is None:
+        return kind == "point" and not lit
+    rows = mesh.point_data.get(light.tangents) if isinstance(light.tangents, str) else None
+    return kind == "line" and rows is not None and rows.shape[1:] == (3,)
+
+
+def _linear(matrix: Array | None) -> Array | None:
+    """Return a matrix without its shift."""
+    if matrix is None:
+        return None
+    linear = np.eye(4)
+    linear[:3, :3] = matrix[:3, :3]
+    return linear
 
 
 def _moved_points(points: ArraySource, matrix: Array | None) -> ArraySource:

@@ -27,7 +27,7 @@ from vizlight.observers.pixels import frame_of
 from vizlight.observers.samples import GLYPH, part_on
 from vizlight.scene import Light, Scene, View
 from vizlight.shading.options import LightOptions
-from vizlight.vtk.cells import has_faces
+from vizlight.vtk.arrays import at_points, is_of_cells
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -161,7 +161,7 @@ def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) 
         if not actor.GetPickable():
             part = None  # what stands beside the data, such as coasts
         elif live is None:
-            part = _colored(actor, renderer, width, _mesh_of(mapper), mapper.GetArrayName())
+            part = _colored(actor, renderer, width)
         else:
             # Strokes are as wide as their property says.
             stroke_width = width if live.stroke == Stroke() else max(1.0, style.GetLineWidth())
@@ -186,10 +186,10 @@ def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Se
     mesh, table = live.source.mesh, actor.GetMapper().GetLookupTable()
     if live.n != 3:
         # Light of n-space has no key in the picture; colours of values have.
-        return _colored(actor, renderer, width, mesh, live.given, live.stroke.diameter)
+        return _colored(actor, renderer, width, live)
     scene = live.scene_of(renderer, actor)
     options = live.source.named or LightOptions.of(vars(live.source.options))
-    colors = _values(mesh, live.given, table)
+    colors = _values(mesh, live.given, table, live.component, averaged=live.averaged)
     # Colours that were given mean nothing that a key tells; crossings of lines are still read, and
     # so are marks.
     lit = live.scalars is None or "values" in colors
@@ -247,21 +247,20 @@ def _marks(actor: vtkActor, mesh: pv.DataSet) -> str | None:
 
 
 def _colored(
-    actor: vtkActor,
-    renderer: vtkRenderer,
-    width: float,
-    mesh: pv.DataSet | None,
-    name: str | None,
-    diameter: float | None = None,
+    actor: vtkActor, renderer: vtkRenderer, width: float, live: Live | None = None
 ) -> SeenMesh | None:
     """Return a mesh with colours that mean values, or nothing on lines, as a part."""
     mapper = actor.GetMapper()
+    mesh = _mesh_of(mapper) if live is None else live.source.mesh
+    name = mapper.GetArrayName() if live is None else live.given
     if mesh is None:
         return None
     # Colours that are drawn as they are have no table; those of n-space were made of values.
     direct = mapper.GetColorMode() == DIRECT and mapper.GetArrayName() == name
     table = None if direct else mapper.GetLookupTable()
-    colors = _values(mesh, name if mapper.GetScalarVisibility() else None, table)
+    component, averaged = (None, False) if live is None else (live.component, live.averaged)
+    name = name if mapper.GetScalarVisibility() else None
+    colors = _values(mesh, name, table, component, averaged=averaged)
     marks = _marks(actor, mesh)
     # Crossings of lines are read whatever their colours mean, and so are marks.
     if not colors and marks is None and not has_lines_only(mesh):
@@ -269,37 +268,45 @@ def _colored(
     scene = Scene(lights=Light.headlight(), view=View.from_camera(renderer.GetActiveCamera()))
     return part_on(
         mesh, scene, LightOptions(tangents=marks), matrix=matrix_of(actor.GetMatrix()),
-        width=width, lit=False, diameter=diameter, **colors,
+        width=width, lit=False,
+        diameter=None if live is None else live.stroke.diameter, **colors,
     )  # fmt: skip
 
 
-def _values(mesh: pv.DataSet, name: str | None, table: Foreign) -> Keywords:
-    """Return the meaning of the colours of an array: values and their table, axes, or nothing."""
+def _values(
+    mesh: pv.DataSet, name: str | None, table: Foreign, component: int | None, *, averaged: bool
+) -> Keywords:
+    """Return the meaning of the colours of an array: values and their table, axes, or nothing.
+
+    Values of cells are those of their colours, unless they are averaged to points.
+    """
     if name is None or name not in (*mesh.point_data, *mesh.cell_data):
         return {}
-    flat = isinstance(mesh, pv.PolyData) and has_faces(mesh) and name not in mesh.point_data
-    if flat and mesh.cell_data[name].ndim == 1:
-        values: Raw = np.asarray(mesh.cell_data[name])
-    elif table is None and name in mesh.point_data:
-        values, flat = np.asarray(mesh.point_data[name]), False
+    of_cells = is_of_cells(mesh, name)
+    flat = of_cells and not averaged
+    if table is None:
+        values: Raw = np.asarray((mesh.cell_data if of_cells else mesh.point_data)[name])
     else:
-        values, flat = values_of(mesh, name), False
+        values = values_of(mesh, name, component, flat=flat)
     if values.ndim == 1:
         has_table = isinstance(table, pv.LookupTable)
         return {"values": values, "table": table, "flat": flat} if has_table else {}
     if name in records.all_made(mesh) and records.provenance(mesh, name)["filter"] == "tint":
-        source = records.provenance(mesh, name)["options"]["scalars"]
-        return _values(mesh, source, unlit_colors(mesh, name)) if source in mesh.array_names else {}
-    return {"by_axes": True} if _by_axes(mesh, values) else {}
+        of_tint = records.provenance(mesh, name)["options"]
+        colors, component = unlit_colors(mesh, name), of_tint["component"]
+        return _values(mesh, of_tint["scalars"], colors, component, averaged=True)
+    return {"by_axes": True} if has_lines_only(mesh) and _by_axes(mesh, name) else {}
 
 
-def _by_axes(mesh: pv.DataSet, colors: Raw) -> bool:
+def _by_axes(mesh: pv.DataSet, name: str) -> bool:
     """Return whether lines have the colours of the axes along which they run, in any light.
 
     Colours that are seen are compared with :func:`vizlight.direction_colors`: the median of their
     angle is less than that of a change of a channel by 1 in 30.
     """
-    if not has_lines_only(mesh) or colors.shape[1] < 3:
+    given = mesh.point_data.get(name)
+    colors = at_points(mesh, np.asarray(mesh.cell_data[name])) if given is None else given
+    if colors is None or colors.shape[1] < 3:
         return False
     shown, of_axes = (
         unit_rows(a[:, :3].astype(np.float64)) for a in (colors, direction_colors(mesh))

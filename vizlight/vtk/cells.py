@@ -50,7 +50,7 @@ field_data: Callable[[Foreign], vtkFieldData] = vtkDataObject.GetFieldData
 grid_cells: Callable[[Foreign], vtkCellArray] = vtkUnstructuredGrid.GetCells
 vtk_points: Callable[[Foreign], vtkPoints] = vtkPointSet.GetPoints
 #: Returns the types of the cells of an unstructured grid; its name changed in VTK 9.6.
-_types_of_cells: Callable[[Foreign], vtkDataArray] = (
+types_of_cells: Callable[[Foreign], vtkDataArray] = (
     vtkUnstructuredGrid.GetCellTypes
     if (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion()) >= (9, 6)
     else vtkUnstructuredGrid.GetCellTypesArray
@@ -381,7 +381,7 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
 
 def _check_types(mesh: vtkUnstructuredGrid, name: str, where: str) -> None:
     """Check that cells have the points that their types need: VTK reads beyond their ends."""
-    types = as_numpy(_types_of_cells(mesh))
+    types = as_numpy(types_of_cells(mesh))
     offsets = as_numpy(mesh.GetCells().GetOffsetsArray())
     fewest: dict[int, int] = {}
     for block in _pool.blocks(len(types), 1 << 16):

@@ -65,12 +65,15 @@ class DrawnCells:
         Polygons or lines.
     size : int
         Number of corners of a part.
+    cells : ndarray of int, or int
+        Cell of the mesh that each polygon or line is, or that of the first.
     """
 
-    def __init__(self, whole: vtkCellArray, size: int) -> None:
+    def __init__(self, whole: vtkCellArray, size: int, cells: Indices | int = 0) -> None:
         #: Number of polygons or lines.
         self.polygons = whole.GetNumberOfCells()
         self._part, self._size = size, max(whole.IsHomogeneous(), 0)
+        self._cells = cells
         self._ids: Indices | _GridCorners = as_numpy(whole.GetConnectivityArray())
         self._offsets = np.zeros(0, np.intp) if self._size else as_numpy(whole.GetOffsetsArray())
 
@@ -92,6 +95,16 @@ class DrawnCells:
     def polygon(self, rows: Rows) -> Indices:
         """Return the polygons that some triangles are of, or the lines of some segments."""
         return self._places(rows)[0]
+
+    def cells(self, rows: Rows) -> Indices:
+        """Return the cells of the mesh that some parts are of."""
+        return self.cells_of(self._places(rows)[0])
+
+    def cells_of(self, polygon: Indices) -> Indices:
+        """Return the cells of the mesh that some polygons or lines are."""
+        if isinstance(self._cells, np.ndarray):
+            return self._cells[polygon]
+        return polygon + self._cells
 
     def corners(self, polygon: Indices) -> tuple[Indices, Indices]:
         """Return the corners of some polygons, one after the other, and where each begins."""
@@ -182,8 +195,8 @@ class DrawnTriangles(DrawnCells):
             kept = np.broadcast_to(kept, surface.GetNumberOfPolys())
             cells = (cells if isinstance(cells, np.ndarray) else cells + np.arange(len(kept)))[kept]
             surface = bare_faces(surface, kept)
-        super().__init__(surface.GetPolys(), TRIANGLE)
-        self._cells, self._points = cells, surface.GetPoints()
+        super().__init__(surface.GetPolys(), TRIANGLE, cells)
+        self._points = surface.GetPoints()
 
     @classmethod
     def of(cls, mesh: Dataset) -> DrawnTriangles | None:
@@ -211,16 +224,6 @@ class DrawnTriangles(DrawnCells):
         surface.SetPoints(mesh.GetPoints())
         surface.SetPolys(grid_cells(mesh))
         return cls(surface)
-
-    def cells(self, rows: Rows) -> Indices:
-        """Return the cells of the surface that some triangles are of."""
-        return self.cells_of(self._places(rows)[0])
-
-    def cells_of(self, polygon: Indices) -> Indices:
-        """Return the cells of the surface that some polygons are."""
-        if isinstance(self._cells, np.ndarray):
-            return self._cells[polygon]
-        return polygon + self._cells
 
     def _some(self, polygon: Indices, place: Indices) -> Indices:
         start, size = self._ends(polygon)
@@ -260,10 +263,12 @@ class DrawnSegments(DrawnCells):
     ----------
     lines : vtkCellArray
         Lines of two points or more.
+    first : int, default: 0
+        Cell of the mesh that the first line is.
     """
 
-    def __init__(self, lines: vtkCellArray) -> None:
-        super().__init__(lines, SEGMENT)
+    def __init__(self, lines: vtkCellArray, first: int = 0) -> None:
+        super().__init__(lines, SEGMENT, first)
 
     @classmethod
     def of(cls, mesh: Dataset) -> DrawnSegments | None:
@@ -272,7 +277,8 @@ class DrawnSegments(DrawnCells):
             return None
         if not isinstance(mesh, vtkPolyData) or has_faces(mesh) or not mesh.GetNumberOfLines():
             return None
-        return cls(mesh.GetLines()) if _are_of(mesh.GetLines(), SEGMENT).all() else None
+        lines, first = mesh.GetLines(), mesh.GetNumberOfVerts()
+        return cls(lines, first) if _are_of(lines, SEGMENT).all() else None
 
     @property
     def are_single(self) -> bool:

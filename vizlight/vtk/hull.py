@@ -28,7 +28,7 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter, vtkGeometryFilter
 
 from vizlight import _pool
-from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices, Raw
+from vizlight._types import AnyArray, Array, Bools, Dataset, Foreign, Indices, Raw
 from vizlight.vtk.arrays import points_of
 from vizlight.vtk.cells import (
     GHOSTS,
@@ -42,6 +42,7 @@ from vizlight.vtk.cells import (
     grid_cells,
     places,
     point_data,
+    types_of_cells,
 )
 
 Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
@@ -174,11 +175,16 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
     have a surface of all points without cells. Where a flat polygon lies on the face of a solid
     cell, the surface has it once, wound as the face and with the data of the polygon.
     """
+    return _numbered_surface(mesh)[:2]
+
+
+def _numbered_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
+    """Return :func:`outer_surface`, and the cell of the mesh that each of its cells is of."""
     if not mesh.GetNumberOfCells():
         bare, points = vtkPolyData(), vtkPoints()
         points.SetData(as_vtk(points_of(mesh, None)[:]))
         bare.SetPoints(points)
-        return bare, np.arange(mesh.GetNumberOfPoints())
+        return bare, np.arange(mesh.GetNumberOfPoints()), np.zeros(0, np.intp)
     curved = is_curved(mesh)
     numbered: Foreign = mesh
     if curved:
@@ -201,27 +207,24 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         take.SetOriginalPointIdsName(NUMBERS)
         take.PassThroughPointIdsOn()
         take.SetOriginalCellIdsName(NUMBERS)
-        take.SetPassThroughCellIds(walled := _has_walls(mesh))
+        take.PassThroughCellIdsOn()
     take.SetInputData(numbered)
     take.Update()
     surface: vtkPolyData = take.GetOutput()
     ids = np.rint(as_numpy(surface.GetPointData().GetArray(NUMBERS))).astype(np.intp)
     surface.GetPointData().RemoveArray(NUMBERS)
-    if not curved:
-        if walled:
-            _join_walls(surface, mesh)
-        return surface, ids
-    numbers = as_numpy(surface.GetCellData().GetArray(NUMBERS)).copy()
-    surface.GetCellData().RemoveArray(NUMBERS)
-    if isinstance(mesh, vtkUnstructuredGrid):
-        # Cells are numbered by VTK's kinds: vertices and lines first.
-        cells = numbers[surface.GetNumberOfVerts() + surface.GetNumberOfLines() :]
-        surface.SetPolys(_outward(surface, mesh, cells))
-    merged, ids = _merged(surface, ids)
+    if curved:
+        if isinstance(mesh, vtkUnstructuredGrid):
+            # Cells are numbered by VTK's kinds: vertices and lines first.
+            before = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
+            cells = as_numpy(surface.GetCellData().GetArray(NUMBERS))[before:]
+            surface.SetPolys(_outward(surface, mesh, cells))
+        surface, ids = _merged(surface, ids)
     if _has_walls(mesh):
-        merged.GetCellData().AddArray(as_vtk(numbers, NUMBERS))
-        _join_walls(merged, mesh)
-    return merged, ids
+        _join_walls(surface, mesh)
+    cells = as_numpy(surface.GetCellData().GetArray(NUMBERS)).astype(np.intp)
+    surface.GetCellData().RemoveArray(NUMBERS)
+    return surface, ids, cells
 
 
 def _has_walls(mesh: Dataset) -> bool:
@@ -233,7 +236,6 @@ def _join_walls(surface: vtkPolyData, grid: Dataset) -> None:
     """Take the faces that lie on polygons out of the surface of a grid, by its numbered cells."""
     before = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
     cells = as_numpy(surface.GetCellData().GetArray(NUMBERS))[before:]
-    surface.GetCellData().RemoveArray(NUMBERS)
     ids, offsets = connectivity(surface.GetPolys())
     ids, sizes, doubled = ids.copy(), np.diff(offsets), []
     kinds = np.array([grid.GetCellType(cell) for cell in cells.tolist()])
@@ -309,42 +311,46 @@ def _merged(surface: vtkPolyData, ids: Indices) -> tuple[vtkPolyData, Indices]:
         put(cells)
     merged.GetCellData().ShallowCopy(surface.GetCellData())
     merged.GetFieldData().ShallowCopy(surface.GetFieldData())
-    _take_rows(merged, surface, first)
+    _take_rows(merged.GetPointData(), surface.GetPointData(), first)
     return merged, points
 
 
-def _take_rows(part: vtkPolyData, whole: Dataset, rows: Indices) -> None:
-    """Give a surface some rows of all arrays of the points of a dataset."""
-    data = whole.GetPointData()
-    for i in range(data.GetNumberOfArrays()):
-        # Arrays of words have no rows of numbers, and are no data of a point of a picture.
-        if (array := data.GetArray(i)) is not None:
-            at = part.GetPointData().AddArray(as_vtk(as_numpy(array)[rows], array.GetName()))
-            if (kind := data.IsArrayAnAttribute(i)) >= 0:
-                part.GetPointData().SetActiveAttribute(at, kind)
+def _take_rows(part: vtkDataSetAttributes, whole: vtkDataSetAttributes, rows: Indices) -> None:
+    """Give the points or the cells of a surface some rows of all arrays of those of a dataset."""
+    for i in range(whole.GetNumberOfArrays()):
+        # Arrays of words have no rows of numbers, and are no data of a picture.
+        if (array := whole.GetArray(i)) is not None:
+            at = part.AddArray(as_vtk(as_numpy(array)[rows], array.GetName()))
+            if (kind := whole.IsArrayAnAttribute(i)) >= 0:
+                part.SetActiveAttribute(at, kind)
 
 
-#: Number of cells of a grid whose surface is found at once.
-BLOCK = 1 << 20
+#: Number of corners of the cells of a grid whose surface is found at once.
+BLOCK = 1 << 21
 
 
-def outer_points(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
-    """Return :func:`outer_surface` without the data of cells, of many linear cells by blocks.
+def outer_faces(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
+    """Return :func:`outer_surface`, and the cell of each face, of many linear cells by blocks.
 
     VTK's filter would take memory for each point and cell of the whole. Faces that two blocks have
     in common are none of its surface.
     """
+    solid_cells = mesh.GetCells() if isinstance(mesh, vtkUnstructuredGrid) else None
+    if solid_cells is None or solid_cells.GetNumberOfConnectivityIds() <= BLOCK:
+        return _numbered_surface(mesh)
     hidden = mesh.GetPointData().HasArray(GHOSTS) or mesh.GetCellData().HasArray(GHOSTS)
-    kind, *others = sorted(cell_types(mesh)) or [_POLYHEDRON]
-    if not isinstance(mesh, vtkUnstructuredGrid) or hidden or others or kind == _POLYHEDRON:
-        return outer_surface(mesh)
-    size = mesh.GetCells().IsHomogeneous()
-    if mesh.GetNumberOfCells() <= BLOCK or size < 0:
-        return outer_surface(mesh)
-    ids = as_numpy(mesh.GetCells().GetConnectivityArray())
-    corners, ends = np.zeros(0, np.intp), np.zeros(1, np.intp)
-    for block in _pool.blocks(mesh.GetNumberOfCells(), BLOCK):
-        some = ids[size * block.start : size * block.stop]
+    kinds = cell_types(mesh)
+    if hidden or is_curved(mesh) or _POLYHEDRON in kinds or {*map(_dimension, kinds)} != {SOLID}:
+        return _numbered_surface(mesh)
+    count, size = solid_cells.GetNumberOfCells(), solid_cells.IsHomogeneous()
+    ids, types = as_numpy(solid_cells.GetConnectivityArray()), as_numpy(types_of_cells(mesh))
+    offsets = as_numpy(solid_cells.GetOffsetsArray()) if size < 0 else np.zeros(0, np.intp)
+    corners, ends, solids = np.zeros(0, np.intp), np.zeros(1, np.intp), np.zeros(0, np.intp)
+    for block in _pool.blocks(count, max(BLOCK * count // len(ids), 1)):
+        bounds = np.arange(block.start, block.stop + 1) * size
+        if size < 0:
+            bounds = offsets[block.start : block.stop + 1]
+        some = ids[bounds[0] : bounds[-1]]
         low, high = int(some.min()), int(some.max()) + 1
         # Neighbouring cells mostly have neighbouring points.
         own, number = np.arange(low, high), some - low
@@ -352,27 +358,40 @@ def outer_points(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
             own, number = np.unique(some, return_inverse=True)
         points, cells, part = vtkPoints(), vtkCellArray(), vtkUnstructuredGrid()
         points.SetData(as_vtk(places(mesh)[own]))
-        cells.SetData(size, as_vtk(number))
+        cells.SetData(*(as_vtk(rows.astype(np.int32)) for rows in (bounds - bounds[0], number)))
         part.SetPoints(points)
-        part.SetCells(kind, cells)
-        surface, origin = outer_surface(part)
+        part.SetCells(as_vtk(types[block]), cells)
+        surface, origin, solid = _numbered_surface(part)
         more, stops = connectivity(surface.GetPolys())
         corners = np.concatenate([corners, own[origin[more]]])
         ends = np.concatenate([ends, ends[-1] + stops[1:]])
-        both = vtkCellArray()
-        both.SetData(as_vtk(ends), as_vtk(corners))
-        if (first := first_twins(both)) is not None:
-            kept = np.bincount(first, minlength=len(first))[first] == 1
-            corners = corners[np.repeat(kept, np.diff(ends))]
-            ends = np.concatenate([[0], np.cumsum(np.diff(ends)[kept])])
+        solids = np.concatenate([solids, solid + block.start])
+        single, sizes = _are_single(corners, ends, low, high), np.diff(ends)
+        corners, solids = corners[np.repeat(single, sizes)], solids[single]
+        ends = np.concatenate([[0], np.cumsum(sizes[single])])
     points, cells, whole = vtkPoints(), vtkCellArray(), vtkPolyData()
     origin, corners = np.unique(corners, return_inverse=True)
     points.SetData(as_vtk(places(mesh)[origin]))
     cells.SetData(as_vtk(ends), as_vtk(corners))
     whole.SetPoints(points)
     whole.SetPolys(cells)
-    _take_rows(whole, mesh, origin)
-    return whole, origin
+    _take_rows(whole.GetPointData(), mesh.GetPointData(), origin)
+    _take_rows(whole.GetCellData(), mesh.GetCellData(), solids)
+    return whole, origin, solids
+
+
+def _are_single(corners: Indices, ends: Indices, low: int, high: int) -> Bools:
+    """Return which polygons have no twin of the same points, from ``low`` to below ``high``."""
+    some = np.logical_and.reduceat((corners >= low) & (corners < high), ends[:-1])
+    sizes, cells = np.diff(ends), vtkCellArray()
+    cells.SetData(
+        as_vtk(np.concatenate([[0], np.cumsum(sizes[some])])),
+        as_vtk(corners[np.repeat(some, sizes)]),
+    )
+    first, single = first_twins(cells), np.ones(len(sizes), dtype=np.bool_)
+    if first is not None:
+        single[some] = np.bincount(first, minlength=len(first))[first] == 1
+    return single
 
 
 def surface_of(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:

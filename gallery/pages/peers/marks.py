@@ -98,9 +98,12 @@ def rows():
             read = plotter.vizlight.legibility()
             plotter.close()
             way, sense, speed = read.direction, read.sense, read.value or read.speed
+            told = "none"
+            if sense is not None:
+                right = f"{sense.told:.0%} and {sense.wrongly:.0%}"
+                told = "chance" if sense.unreadable else right
             yield (
-                field, marks, f"{way.bits:.2f}", f"{way.median:.1f}°",
-                "none" if sense is None else f"{sense.told:.0%} and {sense.wrongly:.0%}",
+                field, marks, f"{way.bits:.2f}", f"{way.median:.1f}°", told,
                 "none" if speed is None else f"{speed.bits:.2f}",
             )  # fmt: skip
 
