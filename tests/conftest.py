@@ -64,8 +64,6 @@ def own_account(monkeypatch):
     """Let no test pay for code that another would have saved time by: its results stay its own."""
     if "vizlight._compiled" in sys.modules:
         monkeypatch.setattr(sys.modules["vizlight._compiled"]._Account, "missed", 0.0)
-    if "vizlight.shading.loops" in sys.modules:
-        monkeypatch.setattr(sys.modules["vizlight.shading.loops"], "_MISSED", {})
 
 
 @pytest.fixture

@@ -232,17 +232,6 @@ def test_a_disk_that_fills_costs_the_cache_alone(home, monkeypatch):
     assert _compiled.active()
 
 
-def test_generated_code_is_kept(home):
-    names = {"offset": 1.0}
-    text = "def shifted(x):\n    return x + offset\n"
-    made = _compiled.Kernel(_compiled.generated(text, names, "shift")["shifted"])
-    assert made(2.0) == 3
-    files = sorted(path.suffix for path in (home / "cache").rglob("*.*"))
-    assert files == [".nbc", ".nbi", ".py"]
-    again = _compiled.Kernel(_compiled.generated(text, names, "shift")["shifted"])
-    assert again.start_up() <= _compiled.READ
-
-
 @pytest.mark.parametrize("own", [shadowing.walk])
 def test_a_first_call_takes_at_most_twice_the_time_of_numpy(own, monkeypatch, tmp_path):
     """Without a cache, a kernel is compiled only if the call wins half of that back."""

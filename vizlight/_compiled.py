@@ -18,7 +18,6 @@ import pickle
 import platform
 import shutil
 import sys
-import tempfile
 import threading
 import types
 import warnings
@@ -31,7 +30,7 @@ from vizlight import _cache, _check
 from vizlight._pool import assigned
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -42,8 +41,8 @@ OLDEST = (0, 59)
 #: one step, quotients as products, the sign of zero. Sums keep their order.
 ROUNDING = frozenset({"contract", "arcp", "nsz"})
 #: Seconds of processor time to import numba, to prepare its compiler for the first kernel of a
-#: process, to read a kernel from the disk, and to compile one of the engine, as measured with numba
-#: 0.68. Other kernels state their own.
+#: process, to read a kernel from the disk, and to compile a short one, as measured with numba 0.68.
+#: Longer kernels state their own.
 IMPORT, PREPARE, READ, COMPILE = 0.45, 0.5, 0.02, 1.2
 #: Share of the time to compile that one process must win back, as the disk keeps the result. With a
 #: half, a call that the kernel saves so much takes at most twice the time of NumPy.
@@ -123,17 +122,6 @@ def _twice(x: float) -> float:
     return 2 * x
 
 
-def could_pay(saved: float, missed: float = 0.0) -> bool:
-    """Return whether a kernel could pay for its start-up, and keep account of the answer.
-
-    It would save ``saved`` seconds now, and would have saved ``missed`` seconds before. Ask
-    :meth:`Kernel.pays` with ``counted=True`` after it.
-    """
-    # The seconds of all kernels are added up, since they share the start-up.
-    _Account.missed += saved
-    return wanted() == "1" or (saved + missed >= READ and _Account.missed >= preparation() + READ)
-
-
 def preparation() -> float:
     """Return the seconds until any kernel can run, which all kernels of a process share."""
     if _Account.prepared:
@@ -194,9 +182,6 @@ class Kernel(Generic[P, R]):
         Whether the function becomes part of each function that calls it.
     rounding : set of str
         Changes of rounding that the compiler may make, such as ``ROUNDING``; none by default.
-    apart : bool
-        Whether no array that the function writes overlaps another argument. Else a loop that looks
-        up a table is not compiled to vector instructions, which takes longer.
     seconds : float
         Processor time to compile the function and its helpers.
     """
@@ -207,26 +192,22 @@ class Kernel(Generic[P, R]):
         *,
         inline: bool = False,
         rounding: frozenset[str] = frozenset(),
-        apart: bool = False,
         seconds: float = COMPILE,
     ) -> None:
         self.seconds = seconds
         self.function, self.inline, self.rounding = function, inline, rounding
-        self.apart = apart
         self.missed = 0.0
         self._compiled: Callable[P, R] | None = None
         self._proven = self._on_disk = False
         self.__doc__ = function.__doc__
 
-    def pays(self, saved: float, *, counted: bool = False) -> bool:
+    def pays(self, saved: float) -> bool:
         """Return whether to call the kernel rather than NumPy code, and keep account of the answer.
 
         Parameters
         ----------
         saved : float
             Seconds that the kernel would save, its start-up apart.
-        counted : bool, default: False
-            Whether :func:`could_pay` was asked about these seconds.
 
         Returns
         -------
@@ -239,8 +220,7 @@ class Kernel(Generic[P, R]):
         """
         if not active():
             return False
-        if not counted:
-            _Account.missed += saved
+        _Account.missed += saved
         if not self._proven and wanted() != "1":
             self.missed += saved
             # No start-up is shorter than a reading: only from there on its folder is looked at.
@@ -343,8 +323,6 @@ class Kernel(Generic[P, R]):
             # An inlined function is kept as a part of those that call it.
             "cache": folder is not None and not self.inline,
         }
-        if self.apart:
-            options["pipeline_class"] = _apart()
         # numba takes its folder from a setting of the process, which the user's own functions need
         # back.
         before = numba.config.CACHE_DIR
@@ -376,26 +354,10 @@ class Kernel(Generic[P, R]):
         texts = [
             _text(self.function.__code__.co_filename),
             str(sorted(self.rounding)),
-            f"{self.apart}",
         ]
         for helper in self._helpers().values():
             texts += helper._sources()
         return tuple(dict.fromkeys(texts))
-
-
-@cache
-def _apart() -> type:
-    """Return numba's compiler with the promise that the arrays of a function do not overlap."""
-    from numba.core.compiler import Compiler
-
-    class Apart(Compiler):  # type: ignore[misc]
-        def __init__(self, *args: object) -> None:
-            # The sixth argument of numba's compiler has its flags.
-            flags = args[5]
-            flags.noalias = True  # type: ignore[attr-defined]
-            super().__init__(*args)
-
-    return Apart
 
 
 def kernel(
@@ -403,48 +365,6 @@ def kernel(
 ) -> Callable[[Callable[P, R]], Kernel[P, R]]:
     """Return a decorator that makes a :class:`Kernel` of a function; see that class."""
     return lambda function: Kernel(function, inline=inline, rounding=rounding, seconds=seconds)
-
-
-def generated(text: str, names: Mapping[str, object], stem: str) -> dict[str, object]:
-    """Return the definitions of a text of Python, as if it stood in a file of the cache.
-
-    Parameters
-    ----------
-    text : str
-        Text of functions.
-    names : mapping of str to object
-        Names that the text uses.
-    stem : str
-        First part of the file's name.
-
-    Returns
-    -------
-    dict
-        Names of the text and their values. The file is written where a folder can be written; it
-        is never read, but numba keeps no code of a function without one.
-    """
-    home = _cache.folder(KERNELS)
-    path = Path(f"<{stem}>")
-    if home is not None:
-        path = home / f"{stem}_{hashlib.sha256(text.encode()).hexdigest()[:16]}.py"
-        # Without the file the code is compiled anew in each process.
-        with contextlib.suppress(OSError):
-            _write(path, text)
-    scope: dict[str, object] = {**names, "__name__": __name__}
-    exec(compile(text, str(path), "exec"), scope)
-    return scope
-
-
-def _write(path: Path, text: str) -> None:
-    """Write a file whole, so that another process sees all of it or nothing."""
-    if path.is_file() and path.read_text(encoding="utf-8") == text:
-        return
-    handle, name = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
-        file.write(text)
-    # The time of the file is part of numba's key: the same whichever process writes it.
-    os.utime(name, (0, 0))
-    Path(name).replace(path)
 
 
 @lru_cache(maxsize=64)

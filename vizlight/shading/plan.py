@@ -73,10 +73,6 @@ class Plan:
     unseen : bool
         Whether the scene has no view: it has no highlight, and other terms that depend on the eye
         are as in :meth:`vizlight.View.isometric`.
-    compiled : bool
-        Whether compiled code has lit the points (extra ``fast``).
-    code : str
-        Code that runs the plan, or the reason why it is not compiled, in words.
     """
 
     n: int
@@ -100,8 +96,6 @@ class Plan:
     specular: bool
     line_exponent: float | None = None
     unseen: bool = False
-    compiled: bool = False
-    code: str = ""
 
     @property
     def components(self) -> bool:
@@ -276,10 +270,6 @@ def _results(plan: Plan) -> Iterator[Line]:
         yield "compute", f"rgb: three channels{kept}"
     else:
         yield "skip", "rgb: nothing in the scene has a colour"
-    if plan.compiled:
-        yield "compute", f"code: {plan.code}"
-    elif plan.code:
-        yield "skip", f"compiled code: {plan.code}"
 
 
 def decide(
