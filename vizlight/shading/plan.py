@@ -119,16 +119,6 @@ class Plan:
         return self.scene.material.ambient * self.scene.ambient_intensity
 
     @property
-    def needs_points(self) -> bool:
-        """Whether anything depends on where a point is."""
-        view = self.scene.view
-        return (
-            any(light.position is not None for light in self.scene.lights)
-            or (self.needs_eye and view is not None and not view.parallel)
-            or self.scene.depth_cue is not None
-        )
-
-    @property
     def needs_eye(self) -> bool:
         """Whether anything depends on where the eye is."""
         # Single points of a mesh of several kinds of cells face the eye.
