@@ -62,10 +62,9 @@ def pytest_terminal_summary(terminalreporter, config):
 @pytest.fixture(autouse=True)
 def own_account(monkeypatch):
     """Let no test pay for code that another would have saved time by: its results stay its own."""
-    if "vizlight._compiled" in sys.modules:
-        monkeypatch.setattr(sys.modules["vizlight._compiled"]._Account, "missed", 0.0)
-    if "vizlight.shading.loops" in sys.modules:
-        monkeypatch.setattr(sys.modules["vizlight.shading.loops"], "_MISSED", {})
+    if "vizlight.geometry.relief.shadowing" in sys.modules:
+        module = sys.modules["vizlight.geometry.relief.shadowing"]
+        monkeypatch.setattr(module.walk, "missed", 0.0)
 
 
 @pytest.fixture

@@ -1,10 +1,9 @@
 """Random plans and inputs, directed at the hard cases, against the oracle of 50 digits.
 
 ``python tests/differential.py [FORMS [EACH]]`` lights EACH random plans (default 2) of FORMS forms
-(default 500) at 32 points each, by NumPy and by compiled code, and writes the largest error in
-units of the stated bound for each kind of plan to ``gallery/pages/forms.csv``. A kernel serves all
-plans of its form; numbers, points and vectors are random for each plan. It takes some 12 minutes of
-processor time, most of it to compile. ``tests/shading/test_compiled.py`` runs a sample.
+(default 500) at 32 points each, and writes the largest error in units of the stated bound for each
+kind of plan to ``gallery/pages/forms.csv``. Numbers, points and vectors are random for each plan.
+``tests/shading/test_terms.py`` runs a sample.
 """
 
 from __future__ import annotations
@@ -20,20 +19,16 @@ from typing import NamedTuple
 import numpy as np
 import oracles
 
-from vizlight import DepthCue, Light, Material, Scene, View, _compiled
+from vizlight import DepthCue, Light, Material, Scene, View
 from vizlight.model import frames
 from vizlight.scene.light import NO_ATTENUATION
-from vizlight.shading import loops
 from vizlight.shading.arrays import Shading, shade_block
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import ShadingOptions
 from vizlight.shading.plan import decide
 
 PAGE = Path(__file__).parents[1] / "gallery" / "pages" / "forms.csv"
-HEAD = (
-    "kind", "forms", "plans, NumPy", "points, NumPy", "worst of the bound, NumPy",
-    "plans, compiled", "points, compiled", "worst of the bound, compiled",
-)  # fmt: skip
+HEAD = ("kind", "forms", "plans", "points", "worst of the bound")
 POINTS = 32
 KINDS = ("surface", "line", "frame", "conditioned", "free", "based", "fur", "shadow", "cylinder")
 POWERS = (0, 0.3, 1, 2, 7.5, 20, 20, 31, 63, 64, 100.5, 1e4, 1e6)
@@ -317,32 +312,7 @@ def by_numpy(plan, inputs, output):
     shade_block(plan, slice(0, inputs.rows), inputs, output)
 
 
-class Interpreted(loops.LoopProgram):
-    """A program whose text runs as Python, point by point: a check of the text."""
-
-    @property
-    def kernel(self):
-        """The function of the text."""
-        return _compiled.generated(self.source, {"sqrt": np.sqrt}, "light")["light"]
-
-
-def by_text(plan, inputs, output):
-    """Light points by the text of a kernel, run as Python."""
-    code = Interpreted(*loops.program_of(plan, inputs))
-    code.shade_block(plan, slice(0, inputs.rows), inputs, output)
-
-
-def by_kernel(plan, inputs, output):
-    """Light points by a compiled kernel."""
-    loops.program_of(plan, inputs).shade_block(plan, slice(0, inputs.rows), inputs, output)
-
-
-def left_to_numpy(plan):
-    """Return whether compiled code leaves a plan to NumPy."""
-    return bool(loops.why_not(plan) or loops._beyond(plan))
-
-
-def compare(made: Case, true: Truth, light) -> tuple[float, int]:
+def compare(made: Case, true: Truth) -> tuple[float, int]:
     """Return the largest error in units of the stated bound, and the points that count.
 
     Parameters
@@ -350,8 +320,6 @@ def compare(made: Case, true: Truth, light) -> tuple[float, int]:
     made : Case
     true : Truth
         Its light by the oracle.
-    light : callable
-        Function of a plan, inputs and an output that lights the points.
 
     Validity must be that of the oracle; points without light have the ambient light.
     """
@@ -359,7 +327,7 @@ def compare(made: Case, true: Truth, light) -> tuple[float, int]:
     plan = decide(scene, inputs.layout, made.options, made.options.precision)
     output = Shading.of(plan, inputs.count)
     with np.errstate(all="ignore"):
-        light(plan, inputs, output)
+        by_numpy(plan, inputs, output)
         bound = _bound(plan, inputs)
     np.testing.assert_array_equal(output.valid, true.valid)
     worst, good = 0.0, true.valid
@@ -483,31 +451,22 @@ def _way(position, direction, points, *, far):
 def main(forms: int = 500, each: int = 2) -> None:
     """Run all, and write the worst of each kind to the table of the page."""
     worst, plans, points, made_of = (defaultdict(float), *(defaultdict(int) for _ in range(3)))
-    with _compiled.setting("1"):
-        for number in range(forms):
-            form = frame(np.random.default_rng(1000 + number))
-            random = np.random.default_rng((14, number))
-            made_of[form.kind] += 1
-            for _ in range(each):
-                made = case(form, random)
-                true = truth(made)
-                plan = decide(made.scene, made.inputs.layout, made.options, made.options.precision)
-                for light in (by_numpy,) if left_to_numpy(plan) else (by_numpy, by_kernel):
-                    ratio, lit = compare(made, true, light)
-                    key = form.kind, light
-                    worst[key] = max(worst[key], ratio)
-                    plans[key] += 1
-                    points[key] += lit
-            print(number, form.kind, f"{worst[form.kind, by_numpy]:.3f}", flush=True)  # noqa: T201
+    for number in range(forms):
+        form = frame(np.random.default_rng(1000 + number))
+        random, kind = np.random.default_rng((14, number)), form.kind
+        made_of[kind] += 1
+        for _ in range(each):
+            made = case(form, random)
+            ratio, lit = compare(made, truth(made))
+            worst[kind] = max(worst[kind], ratio)
+            plans[kind] += 1
+            points[kind] += lit
+        print(number, kind, f"{worst[kind]:.3f}", flush=True)  # noqa: T201
     with PAGE.open("w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(HEAD)
         for kind in KINDS:
-            row = [kind, made_of[kind]]
-            for light in (by_numpy, by_kernel):
-                key = kind, light
-                row += [plans[key], points[key], f"{worst[key]:.2f}"]
-            table.writerow(row)
+            table.writerow([kind, made_of[kind], plans[kind], points[kind], f"{worst[kind]:.2f}"])
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ ROOT = Path(__file__).parents[1]
 #: What runs after the tests of the file and of its folder.
 AROUND = [
     "tests/test_laws.py", "tests/shading/test_engine.py", "tests/filters/test_illuminate.py",
-    "tests/stability/test_stability.py", "tests/shading/test_compiled.py",
+    "tests/stability/test_stability.py", "tests/shading/test_terms.py",
 ]  # fmt: skip
 #: What stands in place of an operator; a comparison of numbers loses its boundary, or turns round.
 OTHERS = {

@@ -15,7 +15,7 @@ import numpy as np
 import oracles
 import pytest
 import pyvista as pv
-from differential import by_numpy, by_text
+from differential import by_numpy
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, cli, files
@@ -110,17 +110,12 @@ def planned(scene, options):
     return asked, decide(scene, POINTS.layout, asked, asked.precision)
 
 
-def numpy(scene, options, folder, light=by_numpy):
+def numpy(scene, options, folder):
     """The algebra of arrays."""
     _, plan = planned(scene, options)
     output = Shading.of(plan, POINTS.count)
-    light(plan, POINTS, output)
+    by_numpy(plan, POINTS, output)
     return [(str(v.dtype), v.tolist()) for v in output.arrays().values()]
-
-
-def loops(scene, options, folder):
-    """The algebra that writes loops for numba; its text is run as Python."""
-    return numpy(scene, options, folder, by_text)
 
 
 def glsl(scene, options, folder):
@@ -187,7 +182,7 @@ def shell(scene, options, folder):
     return [{k: v.tolist() for k, v in d.items()} for d in (lit.point_data, lit.field_data)]
 
 
-ALGEBRAS, WRITERS = (numpy, loops, glsl, oracle), (filtered, page, shell)
+ALGEBRAS, WRITERS = (numpy, glsl, oracle), (filtered, page, shell)
 CASES = [
     (place, kind, field.name)
     for place in (*ALGEBRAS, *WRITERS)
@@ -259,11 +254,10 @@ def test_a_field_means_on_each_manifold_what_it_means_to_the_oracle(kind, name, 
         true = [reference(inputs, i, scene, options, 1e-14) for i in range(inputs.count)]
         lit.append([[light.luminance, *light.rgb] for light in true])
         plan = decide(scene, inputs.layout, options)
-        for algebra in (by_numpy, by_text):
-            output = Shading.of(plan, inputs.count)
-            with np.errstate(all="ignore"):
-                algebra(plan, inputs, output)
-            np.testing.assert_allclose(columns(output), lit[-1], rtol=1e-9)
+        output = Shading.of(plan, inputs.count)
+        with np.errstate(all="ignore"):
+            by_numpy(plan, inputs, output)
+        np.testing.assert_allclose(columns(output), lit[-1], rtol=1e-9)
     assert lit[0] != lit[1]
 
 

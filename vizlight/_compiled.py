@@ -11,14 +11,11 @@ The environment variable ``VIZLIGHT_FAST`` is read at each question: 0 switches 
 from __future__ import annotations
 
 import contextlib
-import contextvars
 import hashlib
 import os
 import pickle
 import platform
 import shutil
-import sys
-import tempfile
 import threading
 import types
 import warnings
@@ -28,10 +25,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Generic, ParamSpec, TypeVar
 
 from vizlight import _cache, _check
-from vizlight._pool import assigned
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -41,30 +37,16 @@ OLDEST = (0, 59)
 #: Rounding that a compiler may change where a bound of a few eps allows it: products and sums in
 #: one step, quotients as products, the sign of zero. Sums keep their order.
 ROUNDING = frozenset({"contract", "arcp", "nsz"})
-#: Seconds of processor time to import numba, to prepare its compiler for the first kernel of a
-#: process, to read a kernel from the disk, and to compile one of the engine, as measured with numba
-#: 0.68. Other kernels state their own.
-IMPORT, PREPARE, READ, COMPILE = 0.45, 0.5, 0.02, 1.2
-#: Share of the time to compile that one process must win back, as the disk keeps the result. With a
-#: half, a call that the kernel saves so much takes at most twice the time of NumPy.
-SHARED = 1 / 2
+#: Seconds of processor time to import numba, to prepare its compiler, and to compile for the first
+#: time; the disk keeps the result. A call that saves half of it takes at most twice NumPy's time.
+START_UP = 2.4
 #: Folder of compiled code among the folders of what is kept.
 KERNELS = "kernels"
 #: What a damaged file of the cache raises when numba reads it.
 _DAMAGED = (pickle.UnpicklingError, EOFError, ValueError, LookupError, AttributeError, ImportError)
-#: What the import of numba raises beside other releases of NumPy or without its own libraries.
-_UNUSABLE = (ImportError, OSError, AttributeError, RuntimeError, TypeError, ValueError)
 
-_SETTING: contextvars.ContextVar[str | None] = contextvars.ContextVar("fast", default=None)
 _LOCK = threading.RLock()
 _BROKEN: list[str] = []
-
-
-class _Account:
-    """Seconds that kernels would have saved in this process, and whether one has run."""
-
-    missed = 0.0
-    prepared = False
 
 
 def wanted() -> str:
@@ -75,17 +57,11 @@ def wanted() -> str:
     ValueError
         If the variable has another value.
     """
-    set_here = _SETTING.get()
-    value = os.environ.get("VIZLIGHT_FAST", "") if set_here is None else set_here
+    value = os.environ.get("VIZLIGHT_FAST", "")
     if value not in ("", "0", "1"):
         expected = "0 (off), 1 (always) or nothing (where it pays)"
         raise ValueError(_check.message("VIZLIGHT_FAST", expected, repr(value)))
     return value
-
-
-def setting(value: str) -> contextlib.AbstractContextManager[None]:
-    """Take a value in place of VIZLIGHT_FAST's while this context is entered."""
-    return assigned(_SETTING, value)
 
 
 def why_not() -> str:
@@ -121,24 +97,6 @@ def try_out() -> None:
 
 def _twice(x: float) -> float:
     return 2 * x
-
-
-def could_pay(saved: float, missed: float = 0.0) -> bool:
-    """Return whether a kernel could pay for its start-up, and keep account of the answer.
-
-    It would save ``saved`` seconds now, and would have saved ``missed`` seconds before. Ask
-    :meth:`Kernel.pays` with ``counted=True`` after it.
-    """
-    # The seconds of all kernels are added up, since they share the start-up.
-    _Account.missed += saved
-    return wanted() == "1" or (saved + missed >= READ and _Account.missed >= preparation() + READ)
-
-
-def preparation() -> float:
-    """Return the seconds until any kernel can run, which all kernels of a process share."""
-    if _Account.prepared:
-        return 0.0
-    return PREPARE + (0.0 if "numba" in sys.modules else IMPORT)
 
 
 class FailedError(RuntimeError):
@@ -194,11 +152,6 @@ class Kernel(Generic[P, R]):
         Whether the function becomes part of each function that calls it.
     rounding : set of str
         Changes of rounding that the compiler may make, such as ``ROUNDING``; none by default.
-    apart : bool
-        Whether no array that the function writes overlaps another argument. Else a loop that looks
-        up a table is not compiled to vector instructions, which takes longer.
-    seconds : float
-        Processor time to compile the function and its helpers.
     """
 
     def __init__(
@@ -207,69 +160,31 @@ class Kernel(Generic[P, R]):
         *,
         inline: bool = False,
         rounding: frozenset[str] = frozenset(),
-        apart: bool = False,
-        seconds: float = COMPILE,
     ) -> None:
-        self.seconds = seconds
         self.function, self.inline, self.rounding = function, inline, rounding
-        self.apart = apart
         self.missed = 0.0
         self._compiled: Callable[P, R] | None = None
-        self._proven = self._on_disk = False
+        self._proven = False
         self.__doc__ = function.__doc__
 
-    def pays(self, saved: float, *, counted: bool = False) -> bool:
-        """Return whether to call the kernel rather than NumPy code, and keep account of the answer.
+    def pays(self, saved: float) -> bool:
+        """Return whether to call the kernel rather than NumPy code.
 
         Parameters
         ----------
         saved : float
             Seconds that the kernel would save, its start-up apart.
-        counted : bool, default: False
-            Whether :func:`could_pay` was asked about these seconds.
 
         Returns
         -------
         bool
-            True once the seconds saved by this call and missed by earlier ones exceed the rest of
-            the start-up: reading or compiling the function, which this kernel must win back, and
-            before the first kernel of a process the import of numba and its preparation, for which
-            the calls of all kernels count. Time missed before is then at most the cost of the
+            True once the seconds saved by this call and missed by earlier ones exceed half of the
             start-up.
         """
         if not active():
             return False
-        if not counted:
-            _Account.missed += saved
-        if not self._proven and wanted() != "1":
-            self.missed += saved
-            # No start-up is shorter than a reading: only from there on its folder is looked at.
-            start = READ
-            if self.missed >= start and _Account.missed >= preparation() + start:
-                start = self.start_up()
-            if self.missed < start or _Account.missed < preparation() + start:
-                return False
-        try:
-            self._dispatcher()
-        except _UNUSABLE as error:
-            # As numba refuses a release of NumPy that it does not know.
-            _give_up("numba cannot be used", error)
-        return active()
-
-    def start_up(self) -> float:
-        """Return the seconds to read or to compile the function, as far as this process pays."""
-        if self._proven:
-            return 0.0
-        # Looked for once, since a folder takes longer to read than a small mesh to light.
-        if self._on_disk:
-            return READ
-        folder = self._folder()
-        if folder is None:
-            return self.seconds
-        # numba names the files of its index after the function and the line on which it begins.
-        name = f"{self.function.__code__.co_name}-{self.function.__code__.co_firstlineno}.*.nbi"
-        self._on_disk = any(folder.rglob(f"*{name}"))
-        return READ if self._on_disk else self.seconds * SHARED
+        self.missed += saved
+        return wanted() == "1" or self.missed >= START_UP / 2
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Call the compiled function.
@@ -291,7 +206,7 @@ class Kernel(Generic[P, R]):
             # Others wait, in place of compiling the same function again.
             with _LOCK:
                 result = self._first(*args, **kwargs)
-                self._proven = _Account.prepared = True
+                self._proven = True
         except Exception as error:
             reason = _give_up(f"numba failed with {name}", error)
             raise FailedError(
@@ -343,8 +258,6 @@ class Kernel(Generic[P, R]):
             # An inlined function is kept as a part of those that call it.
             "cache": folder is not None and not self.inline,
         }
-        if self.apart:
-            options["pipeline_class"] = _apart()
         # numba takes its folder from a setting of the process, which the user's own functions need
         # back.
         before = numba.config.CACHE_DIR
@@ -376,75 +289,17 @@ class Kernel(Generic[P, R]):
         texts = [
             _text(self.function.__code__.co_filename),
             str(sorted(self.rounding)),
-            f"{self.apart}",
         ]
         for helper in self._helpers().values():
             texts += helper._sources()
         return tuple(dict.fromkeys(texts))
 
 
-@cache
-def _apart() -> type:
-    """Return numba's compiler with the promise that the arrays of a function do not overlap."""
-    from numba.core.compiler import Compiler
-
-    class Apart(Compiler):  # type: ignore[misc]
-        def __init__(self, *args: object) -> None:
-            # The sixth argument of numba's compiler has its flags.
-            flags = args[5]
-            flags.noalias = True  # type: ignore[attr-defined]
-            super().__init__(*args)
-
-    return Apart
-
-
 def kernel(
-    *, inline: bool = False, rounding: frozenset[str] = frozenset(), seconds: float = COMPILE
+    *, inline: bool = False, rounding: frozenset[str] = frozenset()
 ) -> Callable[[Callable[P, R]], Kernel[P, R]]:
     """Return a decorator that makes a :class:`Kernel` of a function; see that class."""
-    return lambda function: Kernel(function, inline=inline, rounding=rounding, seconds=seconds)
-
-
-def generated(text: str, names: Mapping[str, object], stem: str) -> dict[str, object]:
-    """Return the definitions of a text of Python, as if it stood in a file of the cache.
-
-    Parameters
-    ----------
-    text : str
-        Text of functions.
-    names : mapping of str to object
-        Names that the text uses.
-    stem : str
-        First part of the file's name.
-
-    Returns
-    -------
-    dict
-        Names of the text and their values. The file is written where a folder can be written; it
-        is never read, but numba keeps no code of a function without one.
-    """
-    home = _cache.folder(KERNELS)
-    path = Path(f"<{stem}>")
-    if home is not None:
-        path = home / f"{stem}_{hashlib.sha256(text.encode()).hexdigest()[:16]}.py"
-        # Without the file the code is compiled anew in each process.
-        with contextlib.suppress(OSError):
-            _write(path, text)
-    scope: dict[str, object] = {**names, "__name__": __name__}
-    exec(compile(text, str(path), "exec"), scope)
-    return scope
-
-
-def _write(path: Path, text: str) -> None:
-    """Write a file whole, so that another process sees all of it or nothing."""
-    if path.is_file() and path.read_text(encoding="utf-8") == text:
-        return
-    handle, name = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
-        file.write(text)
-    # The time of the file is part of numba's key: the same whichever process writes it.
-    os.utime(name, (0, 0))
-    Path(name).replace(path)
+    return lambda function: Kernel(function, inline=inline, rounding=rounding)
 
 
 @lru_cache(maxsize=64)

@@ -7,7 +7,7 @@ import contextvars
 import os
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,22 +15,8 @@ from vizlight import _check
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from contextlib import AbstractContextManager
 
     from vizlight._types import Slice
-
-T = TypeVar("T")
-
-
-@contextlib.contextmanager
-def assigned(variable: contextvars.ContextVar[T], value: T) -> Iterator[None]:
-    """Give a variable a value while this context is entered."""
-    token = variable.set(value)
-    try:
-        yield
-    finally:
-        variable.reset(token)
-
 
 #: Size in bytes of a piece of memory that is freed before the first blocks run.
 PIECE = (1 << 25) - (1 << 20)
@@ -74,9 +60,14 @@ def workers() -> int:
         return os.cpu_count() or 1
 
 
-def threads(count: int) -> AbstractContextManager[None]:
+@contextlib.contextmanager
+def threads(count: int) -> Iterator[None]:
     """Take a number of threads in place of VIZLIGHT_THREADS's while this context is entered."""
-    return assigned(_SETTING, str(count))
+    token = _SETTING.set(str(count))
+    try:
+        yield
+    finally:
+        _SETTING.reset(token)
 
 
 def run(work: Callable[[Slice], int], parts: list[Slice]) -> Iterator[int]:

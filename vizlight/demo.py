@@ -75,7 +75,6 @@ def light_winds() -> Demo:
     ):
         globe = illuminate(globe, scene, tangents="wind", exponent=2)
         error = check(globe, sample=globe.n_points).error
-        # One of the runs may include the start of compiled code, which the median leaves out.
         runs = [engine.shade(points, wind, scene, exponent=2) for _ in range(5)]
         plan = runs[0].plan
         terms = " + ".join(plan.terms)

@@ -17,7 +17,7 @@ OPTIONAL = (
     ("movies in MP4 files", "imageio-ffmpeg", "movie"),
     ("shadows of closed meshes by nearby lights ten times as fast", "embreex", "rays"),
     ("combined solids", "manifold3d", "solids"),
-    ("light of many points ten times as fast", "numba", "fast"),
+    ("shadows and sky over terrain some six times as fast", "numba", "fast"),
     ("tractograms in .trk and .tck files", "nibabel", "tracts"),
     ("tractograms in .trx files", "trx-python", "tracts"),
     ("meshes in .off, .mesh, .msh and other files", "meshio", "formats"),

@@ -2,10 +2,8 @@
 
 The scene is the most expensive of the common ones: lines on a surface, a light with a position, a
 perspective view, the compensated diffuse term, the Phong term and the self-shadow of the surface.
-The script (:mod:`studies._script`) works on whole arrays. The engine runs its NumPy code
-in blocks and, where numba is installed, compiled code. All are timed in turn, so a busy machine
-slows all of them. A first call is that of a process of its own, with imports and the preparation
-of compiled code.
+The script (:mod:`studies._script`) works on whole arrays, the engine in blocks. Both are timed
+in turn, so a busy machine slows both. A first call is that of a process of its own, with imports.
 """
 
 from __future__ import annotations
@@ -13,7 +11,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import tempfile
 from functools import partial
 from pathlib import Path
 
@@ -21,7 +18,6 @@ import numpy as np
 
 from studies import SHINY, Row, Study, peak_memory, take_turns
 from studies import _script as reference
-from vizlight import _compiled
 from vizlight.model import brightness
 from vizlight.scene import Light, Scene, View
 from vizlight.shading import engine
@@ -59,10 +55,7 @@ def measure(count, repeats=5):
         ways[f"NumPy script, {name}"] = partial(
             reference.light, points, tangents, SCENE, normals=normals, exponent=exponent, dtype=kind
         )
-        light = partial(engine.shade, points, tangents, SCENE, normals=normals)
-        ways[f"NumPy blocks, {name}"] = partial(_run, light, "0")
-        if _compiled.active():
-            ways[f"compiled, {name}"] = partial(_run, light, "1")
+        ways[f"blocks, {name}"] = partial(_run, points, tangents, normals)
     seconds, rows = take_turns(ways, repeats), []
     for way, work in ways.items():
         result, script = work(), seconds[f"NumPy script, {way.split(', ')[1]}"]
@@ -75,28 +68,21 @@ def measure(count, repeats=5):
     return rows
 
 
-def _run(light, fast):
-    """Return the luminance by compiled code ("1") or by NumPy ("0")."""
-    with _compiled.setting(fast):
-        return light().luminance
+def _run(points, tangents, normals):
+    return engine.shade(points, tangents, SCENE, normals=normals).luminance
 
 
 def first_calls(counts):
-    """Return the rows of first calls: by NumPy, and by compiled code made and read from disk."""
+    """Return the rows of first calls."""
     rows = []
-    compiled = [("first call, compiled", "1"), ("first call, compiled before", "1")]
     for count in counts:
-        with tempfile.TemporaryDirectory(prefix="vizlight-") as folder:
-            environment = {**os.environ, "XDG_CACHE_HOME": folder}
-            environment["PYTHONPATH"] = str(Path(__file__).parents[1])
-            for way, fast in [("first call, NumPy", "0"), *compiled * _compiled.active()]:
-                environment["VIZLIGHT_FAST"] = fast
-                run = subprocess.run(
-                    [sys.executable, "-c", FIRST_CALL, str(count)],
-                    env=environment, capture_output=True, text=True, check=True,
-                )  # fmt: skip
-                seconds, error = map(float, run.stdout.split())
-                rows.append(Row(way, count, error, 1e9 * seconds / count))
+        run = subprocess.run(
+            [sys.executable, "-c", FIRST_CALL, str(count)],
+            env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])},
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        seconds, error = map(float, run.stdout.split())
+        rows.append(Row("first call", count, error, 1e9 * seconds / count))
     return rows
 
 

@@ -10,7 +10,7 @@ from refusals import refusals
 from shapes import straws as lines
 
 import vizlight
-from vizlight import _compiled, _pool
+from vizlight import _pool
 from vizlight.draw import live
 from vizlight.filters import relight
 from vizlight.geometry.lines import bundle as geometry
@@ -95,22 +95,14 @@ def test_what_has_not_changed_is_not_computed_again(monkeypatch):
 
 
 @pytest.mark.slow
-def test_the_same_with_any_number_of_threads_and_without_compiled_code(monkeypatch):
+def test_the_same_with_any_number_of_threads():
     mesh = lines(60)
-    # Compiled code may take over between two calls.
-    monkeypatch.setenv("VIZLIGHT_FAST", "0")
     with _pool.threads(1):
         one = vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky")
     with _pool.threads(2):
         two = vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky")
     assert np.array_equal(one["transmittance"], two["transmittance"])
     assert np.array_equal(one["sky"], two["sky"])
-    if _compiled._missing():
-        pytest.skip("numba is not installed")
-    monkeypatch.setenv("VIZLIGHT_FAST", "1")
-    fast = vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky")
-    for name in ("transmittance", "sky", "luminance"):
-        np.testing.assert_allclose(fast[name], one[name], atol=2e-5)
 
 
 def in_one_light(mesh):

@@ -11,7 +11,7 @@ from vectors import unit
 import vizlight
 from studies import fur as study
 from studies import peak_memory
-from vizlight import Bundle, Light, Material, Scene, View, _compiled, _pool, fur
+from vizlight import Bundle, Light, Material, Scene, View, _pool, fur
 from vizlight.mesh import meaning
 from vizlight.model import cylinder
 
@@ -446,9 +446,7 @@ def test_points_of_the_skin_are_split_at_sharp_edges():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("origin", [(0, 0, 0), (4e5, 5e6, 100)])
-@pytest.mark.parametrize("fast", ["0", "1"])
-def test_fibres_dim_one_another_and_the_skin_as_a_bundle(origin, fast, monkeypatch):
-    monkeypatch.setenv("VIZLIGHT_FAST", fast if not _compiled._missing() else "0")
+def test_fibres_dim_one_another_and_the_skin_as_a_bundle(origin):
     ball = pv.Sphere(radius=1.0, theta_resolution=30, phi_resolution=30)
     ball.points = np.asarray(ball.points, float) + np.array(origin)
     scene = far((0, 0, 1), (0, -1, 0.4))

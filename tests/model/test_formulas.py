@@ -1,6 +1,6 @@
 """Scalar formulas at the ends of their ranges.
 
-Elsewhere they are the oracle's: see ``shading/test_compiled.py``.
+Elsewhere they are the oracle's: see ``shading/test_terms.py``.
 """
 
 import numpy as np

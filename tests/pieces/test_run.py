@@ -554,9 +554,7 @@ def test_a_level_outside_is_told_with_the_range(image, stored, light):
         pieces.camera_on(stored, contour="W")
 
 
-def test_lines_in_pieces_are_lit_as_the_whole(tmp_path, monkeypatch):
-    # Code that other tests had compiled would light the second of both.
-    monkeypatch.setenv("VIZLIGHT_FAST", "0")
+def test_lines_in_pieces_are_lit_as_the_whole(tmp_path):
     whole = pv.lines_from_points(np.random.default_rng(2).random((20, 3)))
     whole.save(tmp_path / "a.vtp")
     lit = run(tmp_path, tmp_path / "a.vtp")

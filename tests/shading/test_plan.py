@@ -21,7 +21,6 @@ def test_all_terms():
     assert made.terms == ("ambient", "diffuse", "specular")
     assert (made.n, made.k, made.dtype) == (3, 1, np.float64)
     assert made.exponent == pytest.approx(4.7635, abs=1e-4)
-    assert not made.needs_points
 
 
 def test_no_specular_means_no_eye():
@@ -59,7 +58,6 @@ def test_words_for_lights_and_views():
     assert any(line.startswith("light 1: one direction per point") for line in said)
     assert any("attenuation (1.0, 0.0, 1.0)" in line for line in said)
     assert any("once per point, shared by all lights" in line for line in said)
-    assert made.needs_points
 
 
 def test_words_for_the_rest():
@@ -83,8 +81,6 @@ def test_fur_needs_normals_an_eye_and_a_density():
     assert "fur: density 0.3, on the way in for each light and out once" in words(made, "compute")
     assert made.conditioned
     assert not plan(scene, k=1, normals=True, fur=0.3, conditioned=False).conditioned
-    dull = Scene(lights=SUN, view=View(position=(0, 0, 9)), material=shiny(specular=0))
-    assert plan(dull, normals=True, fur=0.3).needs_points
     with pytest.raises(ValueError, match="normals: expected normals, across which fur stands"):
         plan(scene, k=1, fur=0.3)
     with pytest.raises(ValueError, match="fur: expected a number from 0 to 1"):

@@ -18,13 +18,13 @@ import numpy as np
 
 from vizlight import _check
 from vizlight._types import Color, Value
+from vizlight.draw.symbols import Symbol, Writer, needed, number
 from vizlight.model import formulas
 from vizlight.scene import DepthCue, Light, Scene, View
 from vizlight.scene.light import NO_ATTENUATION, WHITE
 from vizlight.shading import display
 from vizlight.shading.algebra import Lamp, Total
 from vizlight.shading.plan import Plan
-from vizlight.shading.symbols import Symbol, Writer, needed
 from vizlight.shading.terms import light
 
 _INPUTS = {
@@ -35,11 +35,8 @@ _INPUTS = {
     "occlusion": ("vizShare", "float"),
     "dimensions": ("vizDimension", "float"),
 }
-_CALLS = {"absolute": "abs", "maximum": "max", "minimum": "min", "arctan2": "atan"}
 #: Largest power for which the rounding of 1 - deficit to float32 does not show.
 LARGEST_PLAIN = 1e4
-#: Numbers beyond this are infinite in float32.
-_MOST = 3e38
 #: Texture of the heights of a field.
 HEIGHTS = "vizField"
 #: The eye at a fragment: a point, or with w = 0 a direction.
@@ -48,14 +45,6 @@ _EYE = (
     "  vec3 vizWo = vizToEye * inversesqrt(max(dot(vizToEye, vizToEye), 1e-30));\n"
 )
 _TURN = "  if (dot(vizN, vizWo) < -vizLean) vizN = -vizN;\n"
-
-
-def number(value: float) -> str:
-    """Return a number as GLSL writes it, rounded to float32's digits."""
-    # Nine digits tell all numbers of float32 apart; without a point or an exponent GLSL would read
-    # an integer.
-    text = f"{max(min(float(value), _MOST), -_MOST):.9g}"
-    return text if "." in text or "e" in text else f"{text}.0"
 
 
 def vector(values: Sequence[float]) -> str:
@@ -106,8 +95,6 @@ def _functions(name: str) -> str:
 class FragmentShader(Writer):
     """Writes the light of a fragment; kinds are "float", "vec3" and "bool"."""
 
-    prefix = "viz"
-
     def __init__(self, plan: Plan, *, data: bool = False) -> None:
         # A uniform, so that a slider can change it without a new program.
         shininess: Value = Symbol(self, "vizShininess", "float")
@@ -120,42 +107,14 @@ class FragmentShader(Writer):
         self.data, self.colored = data, True
         self.made: dict[str, Value] = {}
 
-    # Statements.
-
-    def statement(self, name: str, text: str, kind: str) -> str:
-        """Return the declaration of a name."""
-        return f"  {kind} {name} = {text};"
-
-    def kind(self, *args: Value) -> str:
-        """Return "vec3" if one of the values is a vector, else "float"."""
-        return "vec3" if any(getattr(a, "kind", "") == "vec3" for a in args) else "float"
-
-    def literal(self, value: float, kind: str) -> str:
-        """Return a number."""
-        del kind
-        return number(value)
-
-    def call(self, name: str, *args: Value) -> Value:
-        """Return a function of numbers or vectors."""
-        # GLSL's functions take vectors and numbers alike, as NumPy's do.
-        texts = ", ".join(self.text(a, "float") for a in args)
-        return self.named(f"{_CALLS.get(name, name)}({texts})", self.kind(*args))
-
-    def select(self, test: Symbol, yes: Value, no: Value) -> Value:
-        """Return one of two values."""
-        kind = self.kind(yes, no)
-        pair = [self.text(x, kind) for x in (yes, no)]
-        # Both sides are evaluated; a branch would cost more on most cards.
-        return self.named(f"{test.text} ? {pair[0]} : {pair[1]}", kind)
-
     def power(self, x: Value, deficit: Value, exponent: Value) -> Value:
         """Return a power, by GLSL's own where no digits are lost by it."""
-        raised = self.text(exponent, "float")
+        raised = self.text(exponent)
         # GLSL leaves pow of a number below 0 undefined, which rounding may give.
         if self.plain:
             return self.named(f"pow(max({x.text}, 0.0), {raised})", "float")
         rest = 1.0 - x if deficit is None else deficit
-        return self.named(f"viz_power({x.text}, {self.text(rest, 'float')}, {raised})", "float")
+        return self.named(f"viz_power({x.text}, {self.text(rest)}, {raised})", "float")
 
     # Inputs and numbers.
 

@@ -20,6 +20,7 @@ from vizlight._types import Array, Foreign, Indices, Keywords
 from vizlight.draw import glsl
 from vizlight.draw.dialects import VTK, Replacement, replace
 from vizlight.draw.glsl import ALONG, END, HALO, Stroke, suffixed
+from vizlight.draw.symbols import number
 from vizlight.model import formulas
 from vizlight.vtk import polylines
 from vizlight.vtk.polylines import has_lines_only
@@ -303,7 +304,7 @@ def _quad(stroke: Stroke, *, joined: bool, ended: bool) -> str:
     lines.append(f"float vizSpread = {_ratio(1)};")
     if stroke.diameter is not None:
         lines += [
-            f"vizThick = max(vec2(1.0), {glsl.number(stroke.diameter)} * vizSpread",
+            f"vizThick = max(vec2(1.0), {number(stroke.diameter)} * vizSpread",
             "  / (vec2(vizEnds[0].w, vizEnds[1].w) * vizPen.y));",
         ]
     if stroke.width is not None:
@@ -351,7 +352,7 @@ def _quad(stroke: Stroke, *, joined: bool, ended: bool) -> str:
     # The place across the line, from -1 to 1, has the side of the tangent, which may run against
     # the segment.
     if stroke.round:
-        whole = glsl.number(4 * stroke.halo)
+        whole = number(4 * stroke.halo)
         lines += [
             "float vizSide = dot(vizPVSOutput[1] - vizPVSOutput[0], vizTVSOutput[i]);",
             f"float vizEdge = 2.0 + {whole} / max(vizShare[i], 0.05);",
@@ -372,7 +373,7 @@ def _ratio(row: int) -> str:
 
 def _capped(stroke: Stroke, *, joined: bool, ended: bool) -> list[str]:
     """Return the text that lengthens a quad by a round end, and the places of its corners."""
-    band = glsl.number(2 * stroke.halo)
+    band = number(2 * stroke.halo)
     # Ends are round, and so is a bend that is not mitred: both of its quads end there in a disc.
     if joined:
         is_end = f"abs(vizTurn) <= {SHARPEST_HALO}" + f" || vizEndVSOutput[i] > {AT_END}" * ended
@@ -392,7 +393,7 @@ def _capped(stroke: Stroke, *, joined: bool, ended: bool) -> list[str]:
         "vizPlace += (i == 0 ? -0.5 : 0.5) * vizCap * vizWhole * vizHere.w * vizStraight * vizPen;",
         "vizWide *= vizReach;",
         # Depths of what is nearer to the eye, and of what is behind it.
-        f"vec2 vizMoved = vec2(vizNearer, -{glsl.number(DEPTH)} * vizWidth);",
+        f"vec2 vizMoved = vec2(vizNearer, -{number(DEPTH)} * vizWidth);",
         "vizDeepGSOutput.xy = 0.5 * vizHere.w * ((vizHere.z + vizSlope * vizMoved)",
         "  / (vizHere.w - vizFocus * vizMoved) - vizHere.z / vizHere.w);",
         "vizDeepGSOutput.zw = vizHere.w * vizShare;",
@@ -401,7 +402,7 @@ def _capped(stroke: Stroke, *, joined: bool, ended: bool) -> list[str]:
 
 def _border(stroke: Stroke) -> str:
     """Return the text of a fragment: its distance from the line, its depth, whether it is drawn."""
-    band = glsl.number(2 * stroke.halo)
+    band = number(2 * stroke.halo)
     # Corners were multiplied by their w, so that what is interpolated is linear on the screen.
     return (
         "  vec3 vizAt = vizLineVSOutput * gl_FragCoord.w;\n"

@@ -1,10 +1,10 @@
 """The formulas of light as straight lines of arithmetic on numbers, arrays or symbols.
 
 The public functions of this package validate and call them on arrays; the engine's terms
-(:mod:`vizlight.shading.terms`) call them on blocks of arrays, and on symbols that write compiled
-code and GLSL. The bodies hold nothing but arithmetic, comparisons as the first argument of
-``where`` and ``only``, NumPy's functions, and calls of each other. Vector algebra, that is dot
-products, unit vectors and the part of a vector across a frame, is left to the caller.
+(:mod:`vizlight.shading.terms`) call them on blocks of arrays, and on symbols that write GLSL. The
+bodies hold nothing but arithmetic, comparisons as the first argument of ``where`` and ``only``,
+NumPy's functions, and calls of each other. Vector algebra, that is dot products, unit vectors and
+the part of a vector across a frame, is left to the caller.
 
 Lengths and their squares come from residuals: ``sine`` is the length of wi less its tangential
 part, never ``sqrt(1 - along^2)``. Equations and error bounds stand at the public functions.

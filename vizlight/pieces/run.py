@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check, _compiled, _pool, files
+from vizlight import _check, _pool, files
 from vizlight._types import Foreign, Given, Keywords
 from vizlight.draw import cameras
 from vizlight.filters import lighting
@@ -197,9 +197,6 @@ def light(
         # Streamlines end where their piece ends, and need no cells of others.
         ghost=ghost if filter == "illuminate" else 0,
         suffix={ending: suffix for suffix, ending in INDEX.items()}[path.suffix.lower()],
-        # Where it pays for one worker it may not pay for another, and the two would round
-        # differently.
-        compiled="1" if _compiled.wanted() == "1" else "0",
         # Workers share the processors.
         threads=_pool.workers() if map is builtins.map else 1,
     )

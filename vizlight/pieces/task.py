@@ -11,7 +11,7 @@ from typing import TypeVar
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check, _compiled, _pool, files
+from vizlight import _check, _pool, files
 from vizlight._types import Array, Foreign, Given
 from vizlight.draw import cameras
 from vizlight.filters.illuminate import illuminate, light_mesh
@@ -50,7 +50,6 @@ class Job:
     options: Mapping[str, Given] = field(default_factory=dict)
     ghost: int = 0
     suffix: str = ""
-    compiled: str = "0"
     threads: int = 1
 
     def __post_init__(self) -> None:
@@ -260,8 +259,7 @@ def light(piece: Piece, job: Job, target: Path, whole_sides: Vote | None = None)
     kept = _kept(piece, target, whole_sides)
     mesh, known = kept or (_target(piece, job, job.ghost), None)
     try:
-        ready = _compiled.setting(job.compiled), _pool.threads(job.threads)
-        with warnings.catch_warnings(record=True) as caught, ready[0], ready[1]:
+        with warnings.catch_warnings(record=True) as caught, _pool.threads(job.threads):
             warnings.simplefilter("always", UserWarning)
             # A piece alone does not know which parts of the sky other pieces hide.
             share = job.options.get("occlusion")

@@ -14,12 +14,11 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
-from vizlight import _check, _compiled, _pool
+from vizlight import _check, _pool
 from vizlight._types import Array, Keywords, Slice
 from vizlight.model import kernels
 from vizlight.scene import Scene, View
 from vizlight.scene.keywords import named
-from vizlight.shading import loops
 from vizlight.shading.arrays import Shading, columns, shade_block
 from vizlight.shading.inputs import ArraySource, Layout, ShadingInputs, array_source
 from vizlight.shading.options import Exponent, Model, Precision, ShadingOptions
@@ -108,8 +107,7 @@ def plan(
         n, k, normals, base_tangents or 0, shadowed, fur,
         two_sided=_check.boolean("two_sided", two_sided),
     )  # fmt: skip
-    decided = decide(scene, layout, ShadingOptions.of(locals()), dtype)
-    return dataclasses.replace(decided, code=loops.why_not(decided) or loops.WHERE_IT_PAYS)
+    return decide(scene, layout, ShadingOptions.of(locals()), dtype)
 
 
 @named
@@ -211,9 +209,7 @@ def shade(
     :func:`~vizlight.model.reflection.specular`. Places of points and lengths of vectors add
     nothing to it, but k tangents multiply it by 1 over the sine of the angle between them. For
     ``model="cylinder"`` see :mod:`vizlight.model.cylinder`.
-    With numba installed (extra ``fast``) compiled code lights the points where it pays for its
-    start-up, within the same bounds; it rounds otherwise than NumPy.
-    Memory beyond the output: about 15 MB for each thread, whatever N; 1 MB by compiled code.
+    Memory beyond the output: about 15 MB for each thread, whatever N.
     """
     chosen = ShadingOptions.of(locals())
     optional = {
@@ -276,26 +272,19 @@ def run(
     decided = decide(scene, inputs.layout, options)
     start = time.perf_counter()
     count, repeat = inputs.count, inputs.repeat
-    # Compiled code where numba is there and the points are many enough to pay for its start-up.
-    code, reason = loops.prepare(decided, inputs)
-    decided = dataclasses.replace(decided, compiled=code is not None, code=reason or loops.IN_WORDS)
     shading = Shading.of(decided, count)
-    light = shade_block if code is None else code.shade_block
     step = _step(decided, inputs) if block is None else _check.integer("block", block, low=1)
 
     def work(rows: Slice) -> int:
         # Overflow and NaN of single points are wanted: the terms mark them instead of warning.
         with np.errstate(all="ignore"):
-            light(decided, rows, inputs, shading)
+            shade_block(decided, rows, inputs, shading)
         return int(rows.stop) * repeat
 
     for done in _pool.run(work, _pool.blocks(inputs.rows, step)):
         if progress is not None:
             progress(done, count)
-    # The compiler may have failed at the first block, which NumPy then has lit.
-    if code is not None and (reason := _compiled.why_not()):
-        decided = dataclasses.replace(decided, compiled=False, code=reason)
-    return dataclasses.replace(shading, plan=decided, seconds=time.perf_counter() - start)
+    return dataclasses.replace(shading, seconds=time.perf_counter() - start)
 
 
 def _step(plan: Plan, inputs: ShadingInputs) -> int:

@@ -73,10 +73,6 @@ class Plan:
     unseen : bool
         Whether the scene has no view: it has no highlight, and other terms that depend on the eye
         are as in :meth:`vizlight.View.isometric`.
-    compiled : bool
-        Whether compiled code has lit the points (extra ``fast``).
-    code : str
-        Code that runs the plan, or the reason why it is not compiled, in words.
     """
 
     n: int
@@ -100,8 +96,6 @@ class Plan:
     specular: bool
     line_exponent: float | None = None
     unseen: bool = False
-    compiled: bool = False
-    code: str = ""
 
     @property
     def components(self) -> bool:
@@ -123,16 +117,6 @@ class Plan:
     def ambient(self) -> float:
         """Ambient term, one number for all points."""
         return self.scene.material.ambient * self.scene.ambient_intensity
-
-    @property
-    def needs_points(self) -> bool:
-        """Whether anything depends on where a point is."""
-        view = self.scene.view
-        return (
-            any(light.position is not None for light in self.scene.lights)
-            or (self.needs_eye and view is not None and not view.parallel)
-            or self.scene.depth_cue is not None
-        )
 
     @property
     def needs_eye(self) -> bool:
@@ -276,10 +260,6 @@ def _results(plan: Plan) -> Iterator[Line]:
         yield "compute", f"rgb: three channels{kept}"
     else:
         yield "skip", "rgb: nothing in the scene has a colour"
-    if plan.compiled:
-        yield "compute", f"code: {plan.code}"
-    elif plan.code:
-        yield "skip", f"compiled code: {plan.code}"
 
 
 def decide(

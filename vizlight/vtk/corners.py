@@ -12,7 +12,6 @@ from vizlight import _pool
 from vizlight._types import Array, Bools, Indices, Raw
 from vizlight.geometry.lines.simplices import EDGES, components
 from vizlight.model import kernels
-from vizlight.vtk import loops
 from vizlight.vtk.cells import as_numpy, connectivity, places, triangles
 from vizlight.vtk.topology import BLOCK, double_cover
 
@@ -95,19 +94,9 @@ def corner_normals(points: Raw, faces: Iterator[Indices] | list[Indices]) -> Arr
         Unit normals, zero at points of no face, or of faces without area.
     """
     total = np.zeros((3, len(points)))
-    by_points = np.zeros(0)
     for corners in faces:
-        if loops.add_corners.pays(loops.CORNER_SAVED * corners.size):
-            by_points = by_points if len(by_points) else np.zeros(total.size)
-            loops.add_corners(
-                by_points, np.ascontiguousarray(points).reshape(-1), corners.reshape(-1),
-                corners.shape[1], FLAT, LEAST,
-            )  # fmt: skip
-            continue
         for block in _pool.blocks(len(corners), max(CORNERS // max(corners.shape[1], 1), 1)):
             _add(total, points, corners[block])
-    if len(by_points):
-        total += by_points.reshape(-1, 3).T
     return np.ascontiguousarray(kernels.unit(total)[0].T, dtype=np.float32)
 
 

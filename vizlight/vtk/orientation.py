@@ -13,9 +13,8 @@ from vizlight import _pool
 from vizlight._types import Array, Bools, Indices, Raw, Slice
 from vizlight.model import kernels
 from vizlight.scene import View
-from vizlight.vtk import loops
 from vizlight.vtk.cells import connectivity, faces, finite_points, places, triangles
-from vizlight.vtk.corners import NEAR, SHARP, Slivers, all_slivers, slivers_of
+from vizlight.vtk.corners import SHARP, Slivers, slivers_of
 from vizlight.vtk.topology import BLOCK, SortedEdges, ends_of, sorted_edges, topology
 
 if TYPE_CHECKING:
@@ -172,13 +171,6 @@ class SurfaceShape:
         self._full = np.zeros(len(self.triangles), dtype=np.bool_)
         #: Short sides of the triangles.
         self.slivers: list[Slivers] = []
-        if loops.find_directions.pays(loops.DIRECTION_SAVED * len(self.triangles)):
-            count = loops.find_directions(
-                self._unit, self._full, np.ascontiguousarray(self.points).reshape(-1),
-                self.triangles.reshape(-1), NARROWEST, NEAR,
-            )  # fmt: skip
-            self.slivers = all_slivers(self.points, self.triangles) if count else []
-            return
         for block in _pool.blocks(len(self.triangles), FEW):
             rows = self.triangles[block]
             self._unit[:, block], self._full[block], squares = _directions(self.points, rows)
@@ -270,16 +262,7 @@ class SurfaceShape:
         piece, n = self.piece, len(self.points)
         sums = Sums.zero(self.count)
         bend, least = np.zeros(n), np.ones(n, dtype=np.float32)
-        middle, largest = self.frame
-        if self.side is None and loops.survey.pays(loops.SURVEY_SAVED * len(self.triangles)):
-            sums_of_loop = np.zeros((self.count, 5))
-            loops.survey(
-                sums_of_loop, bend, least, np.ascontiguousarray(self.points).reshape(-1),
-                self.triangles.reshape(-1), np.ascontiguousarray(normals).reshape(-1),
-                self.finite, self._full, piece, middle.T, largest,
-            )  # fmt: skip
-            sums = Sums(sums.score, sums_of_loop[:, 2:], sums_of_loop[:, 1], sums_of_loop[:, 0])
-            return sums, self._lean(bend, least)
+        _, largest = self.frame
         for block in _pool.blocks(len(self.triangles), FEW):
             rows: Indices = self.triangles[block]
             wide = self._full[block]
@@ -308,18 +291,14 @@ class SurfaceShape:
                     cosine[~wide] = 1.0
                     np.minimum.at(least, at, cosine.astype(np.float32))
                 np.add.at(bend, at, kernels.dot(normal, inward))
-        return sums, self._lean(bend, least)
-
-    def _lean(self, bend: Array, least: Array) -> Array:
-        """Return the lean of :meth:`survey`, in the place of the least cosines."""
-        lean = least
-        for block in _pool.blocks(len(least), BLOCK):
+        # The lean takes the place of the least cosines.
+        for block in _pool.blocks(n, BLOCK):
             near = least[block]
             sine = np.where(near > 0, np.sqrt(np.clip(1 - near * near, 0, 1)), 1)
             bent = bend[block]
             # Where the surroundings of a point lie above its tangent plane the surface is concave.
-            lean[block] = np.where(np.isfinite(bent), np.copysign(sine, -bent), 0)
-        return lean
+            least[block] = np.where(np.isfinite(bent), np.copysign(sine, -bent), 0)
+        return sums, least
 
     def orient(self, normals: Array, sums: Sums, lean: Array, view: View | None) -> None:
         """Flip normals, with their lean, of pieces where they point inward or away from the eye."""

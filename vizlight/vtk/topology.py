@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from vizlight import _pool
 from vizlight._types import Bools, Indices, Raw, Slice
 from vizlight.geometry.lines.simplices import EDGES, components
-from vizlight.vtk import loops
 from vizlight.vtk.cells import firsts, mixed, places, triangles
 
 if TYPE_CHECKING:
@@ -95,8 +94,6 @@ def sorted_edges(
         for block in blocks:
             rows = corners[block] if same is None else same[corners[block]]
             ranges.append((int(rows.min()), int(rows.max())))
-    compiled = loops.sort_edges.pays(loops.EDGE_SAVED * corners.size)
-    flat = (corners if same is None or not compiled else same[corners]).reshape(-1)
     for part in range(parts):
         low, high = part * count // parts, (part + 1) * count // parts
         # A block of triangles whose points all lie beside this range has no edge in it.
@@ -105,10 +102,7 @@ def sorted_edges(
             for number, block in enumerate(blocks)
             if not ranges or (ranges[number][0] < high and ranges[number][1] >= low)
         ]
-        if near and compiled:
-            spans = np.array([(block.start, block.stop) for block in near])
-            yield SortedEdges(*loops.sort_edges(flat, spans, low, high))
-        elif near:
+        if near:
             yield _sorted(corners, same, near, (low, high) if parts > 1 else None)
 
 

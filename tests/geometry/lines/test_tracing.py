@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight import _compiled
 from vizlight.geometry.lines.simplices import CellPlaces, Simplices
 from vizlight.geometry.lines.tracing import Flow, Tracing, trace
 
@@ -83,22 +82,6 @@ def test_cells_without_extent_and_sides_of_three_cells_end_a_walk():
     end, inside = fan.walk(start, np.array([[0.0, -5.0, 0.0]]))
     assert not inside.any()
     np.testing.assert_allclose(fan.positions(end)[0], [1 / 3, 0, 0], atol=1e-12)
-
-
-@pytest.mark.skipif(bool(_compiled._missing()), reason="numba is not installed")
-@pytest.mark.parametrize("make", [square, cube, box])
-def test_compiled_and_plain_walks_agree(make, monkeypatch):
-    mesh = make()
-    places = mesh.random(3000, np.random.default_rng(5))
-    steps = np.random.default_rng(6).normal(size=(3000, 3))
-    steps[0] = 0
-    found = []
-    for fast in "01":
-        monkeypatch.setenv("VIZLIGHT_FAST", fast)
-        found.append(mesh.walk(places, steps))
-    (plain, inside), (fast, same) = found
-    np.testing.assert_array_equal(same, inside)
-    np.testing.assert_allclose(mesh.positions(fast), mesh.positions(plain), atol=1e-12)
 
 
 def orbit_error(make, step):

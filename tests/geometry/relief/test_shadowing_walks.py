@@ -35,12 +35,13 @@ def test_numpy_follows_the_rays_that_a_kernel_fails_with(light, monkeypatch):
         raise RuntimeError("LLVM ERROR")
 
     x, y, z = hills(20, 15)
-    with _compiled.setting("0"):
-        numpys = relief.shadow(x, y, z, depth=0.1, **light)
+    monkeypatch.setenv("VIZLIGHT_FAST", "0")
+    numpys = relief.shadow(x, y, z, depth=0.1, **light)
     monkeypatch.setattr(_compiled, "_BROKEN", [])
     monkeypatch.setattr(shadowing.walk, "_proven", True)
     monkeypatch.setattr(shadowing.walk, "_compiled", broken)
-    with _compiled.setting("1"), pytest.warns(RuntimeWarning, match="LLVM ERROR") as caught:
+    monkeypatch.setenv("VIZLIGHT_FAST", "1")
+    with pytest.warns(RuntimeWarning, match="LLVM ERROR") as caught:
         found = relief.shadow(x, y, z, depth=0.1, **light)
     assert len(caught) == 1
     np.testing.assert_array_equal(found, numpys)

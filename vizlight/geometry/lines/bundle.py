@@ -24,14 +24,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vizlight import _compiled, _pool
+from vizlight import _pool
 from vizlight._types import Array, Bools, Indices, Slice, VectorLike
 from vizlight.geometry import axial
 
 __all__ = ["Medium", "Targets", "directions", "medium"]
 
-#: Seconds per point or piece that compiled code saves.
-SAVED = 60e-9
 #: Number of places that NumPy spreads at once.
 AT_ONCE = 1 << 19
 #: Place in a voxel of a line through the origin: there its hat functions have their mean over all
@@ -94,10 +92,6 @@ def spread(cells: Array, values: Array, shape: tuple[int, int, int], /) -> Array
         Grid.
     """
     values = values.astype(np.float32, copy=False)
-    if _spread.pays(len(values) * SAVED):
-        grid = np.zeros(shape, np.float32)
-        _spread(np.ascontiguousarray(cells), values, grid.reshape(-1), shape[1], shape[2])
-        return grid
     size = shape[0] * shape[1] * shape[2]
     flat = np.zeros(size)
     for start in range(0, len(values), AT_ONCE):
@@ -126,9 +120,6 @@ def read(grid: Array, cells: Array, /) -> Array:
     """
     values = np.zeros(cells.shape[1], np.float32)
     flat = grid.reshape(-1)
-    if _read.pays(len(values) * SAVED):
-        _read(flat, np.ascontiguousarray(cells), grid.shape[1], grid.shape[2], values)
-        return values
     for index, weight in _corners(cells, grid.shape):
         values += weight * flat[index]
     return values
@@ -183,39 +174,6 @@ def voxel_depths(
     # The sums of all stand in two layers, so that they are read like a grid.
     cells[2] = 0
     return read(np.stack([total, total], axis=2), cells) - back, back
-
-
-@_compiled.kernel(rounding=_compiled.ROUNDING)
-def _spread(cells: Array, values: Array, grid: Array, rows: int, columns: int) -> None:
-    """Add values to the 8 voxels around places."""
-    unit, x, y, z = np.float32(1), cells[0], cells[1], cells[2]
-    for i in range(len(values)):
-        p, q, r = int(x[i]), int(y[i]), int(z[i])
-        # The casts keep the arithmetic in float32: with an integer numba would widen it to float64.
-        f, g, h = x[i] - np.float32(p), y[i] - np.float32(q), z[i] - np.float32(r)
-        at = (p * rows + q) * columns + r
-        for plane in (values[i] * (unit - f), values[i] * f):
-            low, high = plane * (unit - g), plane * g
-            grid[at] += low * (unit - h)
-            grid[at + 1] += low * h
-            grid[at + columns] += high * (unit - h)
-            grid[at + columns + 1] += high * h
-            at += rows * columns
-
-
-@_compiled.kernel(rounding=_compiled.ROUNDING)
-def _read(grid: Array, cells: Array, rows: int, columns: int, values: Array) -> None:
-    """Take values from the 8 voxels around places."""
-    unit, x, y, z = np.float32(1), cells[0], cells[1], cells[2]
-    for i in range(len(values)):
-        p, q, r = int(x[i]), int(y[i]), int(z[i])
-        f, g, h = x[i] - np.float32(p), y[i] - np.float32(q), z[i] - np.float32(r)
-        at = (p * rows + q) * columns + r
-        for share in (unit - f, f):
-            low = grid[at] * (unit - h) + grid[at + 1] * h
-            high = grid[at + columns] * (unit - h) + grid[at + columns + 1] * h
-            values[i] += share * (low * (unit - g) + high * g)
-            at += rows * columns
 
 
 #: Mean square of the hat function of voxels across a line, and numbers of lengths and of angles in

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vizlight import _compiled, _pool
+from vizlight import _pool
 from vizlight._types import Array, Bools, Indices, Rows
 
 if TYPE_CHECKING:
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 MOST_CROSSINGS = 300
 #: Least number of edges that are looked at, or sorted, at once.
 EDGES = 1 << 19
-#: Seconds that compiled code saves per walk, and per place of it.
-SAVED = 4e-4, 4e-6
 
 
 @dataclass
@@ -314,13 +312,6 @@ class Simplices:
         cell, weights = places.cell.copy(), places.weights.copy()
         inside = np.ones(len(cell), dtype=np.bool_)
         ahead = self._laid(cell, steps)
-        if _walk.pays(SAVED[0] + SAVED[1] * len(cell)):
-            _walk(
-                cell, weights, np.array(ahead, dtype=np.float64), inside, self.cells.reshape(-1),
-                self.merged.reshape(-1), self.neighbours.reshape(-1), self.points.reshape(-1),
-                self.gradients.reshape(-1), self.k + 1,
-            )  # fmt: skip
-            return CellPlaces(cell, weights), inside
         on = np.arange(len(cell))
         for _ in range(MOST_CROSSINGS):
             here, at = cell[on], weights[on]
@@ -396,87 +387,3 @@ class Simplices:
                 np.linalg.norm(across, axis=1, keepdims=True) * inward
             )
         return beyond, moved_weights, ahead
-
-
-Step = tuple[float, float, float]
-
-
-@_compiled.kernel(inline=True)
-def _to_side(w: Array, gradients: Array, here: int, step: Step) -> tuple[float, int]:
-    """Move weights along a step, as far as a side; return the share that is made, and the side."""
-    m, share, side, total = len(w), np.inf, 0, 0.0
-    for j in range(m):
-        at = 3 * (here * m + j)
-        change = gradients[at] * step[0] + gradients[at + 1] * step[1] + gradients[at + 2] * step[2]
-        if change < 0 and -w[j] / change < share:
-            share, side = -w[j] / change, j
-    for j in range(m):
-        at = 3 * (here * m + j)
-        change = gradients[at] * step[0] + gradients[at + 1] * step[1] + gradients[at + 2] * step[2]
-        w[j] = max(w[j] + min(share, 1.0) * change, 0.0)
-        # Exactly 0, whatever rounding leaves: the place is on that side.
-        if share < 1 and j == side:
-            w[j] = 0.0
-        total += w[j]
-    for j in range(m):
-        w[j] /= total
-    return share, side
-
-
-@_compiled.kernel(inline=True)
-def _beyond(w: Array, scratch: Array, merged: Indices, here: int, side: int, beyond: int) -> int:
-    """Take weights to the cell beyond a side; return its vertex that is not on that side."""
-    m, apex = len(w), 0
-    for j in range(m):
-        scratch[j], shared = 0.0, False
-        for other in range(m):
-            if other != side and merged[beyond * m + j] == merged[here * m + other]:
-                scratch[j] += w[other]
-                shared = True
-        if not shared:
-            apex = j
-    for j in range(m):
-        w[j] = scratch[j]
-    return apex
-
-
-@_compiled.kernel(inline=True)
-def _turned(step: Step, points: Array, a: int, b: int, gradients: Array, at: int) -> Step:
-    """Return a step with its part across an edge from a to b turned into the next triangle."""
-    p, q, r = points[b] - points[a], points[b + 1] - points[a + 1], points[b + 2] - points[a + 2]
-    size = np.sqrt(p * p + q * q + r * r)
-    p, q, r = p / size, q / size, r / size
-    along = step[0] * p + step[1] * q + step[2] * r
-    x, y, z = step[0] - along * p, step[1] - along * q, step[2] - along * r
-    f, g, h = gradients[at], gradients[at + 1], gradients[at + 2]
-    # The gradient (f, g, h) is not of length 1, which the quotient makes up for.
-    across = np.sqrt((x * x + y * y + z * z) / (f * f + g * g + h * h))
-    return along * p + across * f, along * q + across * g, along * r + across * h
-
-
-@_compiled.kernel()
-def _walk(
-    cell: Indices, weights: Array, ahead: Array, inside: Bools, cells: Indices, merged: Indices,
-    neighbours: Indices, points: Array, gradients: Array, m: int,
-) -> None:  # fmt: skip
-    """Walk straight ahead, as :meth:`Simplices.walk`; cells, weights and flags are changed."""
-    scratch = np.empty(m)
-    for i in range(len(cell)):
-        here, w, inside[i] = cell[i], weights[i], False
-        x, y, z = ahead[i, 0], ahead[i, 1], ahead[i, 2]
-        for _ in range(MOST_CROSSINGS):
-            share, side = _to_side(w, gradients, here, (x, y, z))
-            beyond = neighbours[here * m + side]
-            if share >= 1 or beyond < 0:
-                # A step whose rest would lead through a boundary is not whole.
-                inside[i] = share >= 1
-                break
-            x, y, z = (1 - share) * x, (1 - share) * y, (1 - share) * z
-            apex = _beyond(w, scratch, merged, here, side, beyond)
-            # Tetrahedra fill one space, in which the step goes on as it is; triangles are unfolded.
-            if m == 3:
-                a, b = cells[here * 3 + (side + 1) % 3], cells[here * 3 + (side + 2) % 3]
-                at = 3 * (beyond * 3 + apex)
-                x, y, z = _turned((x, y, z), points, 3 * a, 3 * b, gradients, at)
-            here = beyond
-        cell[i] = here

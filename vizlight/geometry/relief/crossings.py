@@ -323,7 +323,7 @@ def crossed(
     return t
 
 
-@_compiled.kernel(seconds=2.0)
+@_compiled.kernel()
 def exact(
     z: Array, x: Array, y: Array, rows: Indices, columns: Indices, slope: float, top: float,
     out: Array,

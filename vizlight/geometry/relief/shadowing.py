@@ -271,7 +271,7 @@ def beside(largest: Array, at: int, before_x: int, before_y: int) -> tuple[int, 
     return (1, 1) if before_x > 0 and before_y > 0 else (0, 0)
 
 
-@_compiled.kernel(seconds=1.4)
+@_compiled.kernel()
 def walk(
     start: Array, way: Array, reach: Array, x: Array, y: Array, corners: Array, bounds: Bounds,
     walls: bool, out: Array,

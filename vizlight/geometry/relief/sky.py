@@ -96,7 +96,7 @@ def under(nodes: Array, k: int, side: float) -> int:
     return k
 
 
-@_compiled.kernel(rounding=_compiled.ROUNDING, seconds=3.0)
+@_compiled.kernel(rounding=_compiled.ROUNDING)
 def azimuth(
     z: Array, x: Array, y: Array, p: Array, q: Array, slope: float, grid: tuple[float, float],
     some: tuple[int, int], near: int, crowd: int, openness: bool, local: Array, swapped: bool,

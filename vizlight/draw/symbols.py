@@ -1,4 +1,4 @@
-"""Symbols stand for numbers and vectors where the terms leave a program behind.
+"""Symbols stand for numbers and vectors where the terms leave a program in GLSL behind.
 
 NumPy's functions and operators accept a symbol (NEP 13), so that the terms and the formulas need no
 second notation: each operation is written down as a statement, and its result is a new symbol.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from vizlight._types import Value
 from vizlight.shading.algebra import Algebra
@@ -22,10 +22,21 @@ _SIGNS = {
     "gt": ">", "ge": ">=", "lt": "<", "le": "<=",
 }  # fmt: skip
 _TESTS = (">", ">=", "<", "<=")
+_CALLS = {"absolute": "abs", "maximum": "max", "minimum": "min", "arctan2": "atan"}
+#: Numbers beyond this are infinite in float32.
+_MOST = 3e38
+
+
+def number(value: float) -> str:
+    """Return a number as GLSL writes it, rounded to float32's digits."""
+    # Nine digits tell all numbers of float32 apart; without a point or an exponent GLSL would read
+    # an integer.
+    text = f"{max(min(float(value), _MOST), -_MOST):.9g}"
+    return text if "." in text or "e" in text else f"{text}.0"
 
 
 class Symbol:
-    """A name or an expression in a program, of a kind such as "float" or "bool"."""
+    """A name or an expression in a program, of the kind "float", "vec3" or "bool"."""
 
     def __init__(self, writer: Writer, text: str, kind: str) -> None:
         self.writer, self.text, self.kind = writer, text, kind
@@ -50,75 +61,28 @@ class Symbol:
         return self.writer.power(self, deficit, exponent)
 
 
-class Components(tuple[Symbol, ...]):
-    """A vector as the symbols of its components."""
-
-    __slots__ = ()
-
-    def each(self, sign: str, other: Value, *, turned: bool) -> Components:
-        """Return an operation component by component, with a number or another vector."""
-        others = other if isinstance(other, Components) else [other] * len(self)
-        pairs = zip(self, others, strict=True)
-        return Components(
-            a.writer.operation(sign, *((b, a) if turned else (a, b))) for a, b in pairs
-        )
-
-
-def _operator(sign: str, *, turned: bool = False) -> Callable[[Symbol | Components, Value], Value]:
-    def apply(self: Symbol | Components, other: Value) -> Value:
-        if isinstance(self, Components):
-            return self.each(sign, other, turned=turned)
-        if isinstance(other, Components):
-            # Python then asks the vector, which goes component by component.
-            return NotImplemented
-        pair = (other, self) if turned else (self, other)
-        return self.writer.operation(sign, *pair)
+def _operator(sign: str, *, turned: bool = False) -> Callable[[Symbol, Value], Value]:
+    def apply(self: Symbol, other: Value) -> Value:
+        return self.writer.operation(sign, *((other, self) if turned else (self, other)))
 
     return apply
 
 
 for _name, _shorter in (("add", "add"), ("sub", "subtract"), ("mul", "multiply"),
                         ("truediv", "divide")):  # fmt: skip
-    for _kind in (Symbol, Components):
-        setattr(_kind, f"__{_name}__", _operator(_SIGNS[_shorter]))
-        setattr(_kind, f"__r{_name}__", _operator(_SIGNS[_shorter], turned=True))
+    setattr(Symbol, f"__{_name}__", _operator(_SIGNS[_shorter]))
+    setattr(Symbol, f"__r{_name}__", _operator(_SIGNS[_shorter], turned=True))
 for _name in ("gt", "ge", "lt", "le"):
     setattr(Symbol, f"__{_name}__", _operator(_SIGNS[_name]))
 
 
-class Language(Protocol):
-    """The language of a program."""
-
-    def statement(self, name: str, text: str, kind: str) -> str:
-        """Return the statement that gives a name to an expression."""
-
-    def kind(self, *args: Value) -> str:
-        """Return the kind of a result of some values."""
-
-    def literal(self, value: float, kind: str) -> str:
-        """Return a number as the language writes it where another kind is met."""
-
-    def call(self, name: str, *args: Value) -> Value:
-        """Return a function of NumPy of some values."""
-
-    def select(self, test: Symbol, yes: Value, no: Value) -> Value:
-        """Return ``yes`` where a test holds, else ``no``."""
-
-    def power(self, x: Value, deficit: Value, exponent: Value) -> Value:
-        """Return a number of [0, 1] to a power."""
-
-
-class Writer(Algebra, Language):
+class Writer(Algebra):
     """Writer of the statements of a program, each once."""
-
-    #: First letters of the names of a program.
-    prefix = "v"
 
     def __init__(self, plan: Plan) -> None:
         super().__init__(plan)
         self.lines: list[str] = []
         self.names: dict[tuple[str, str], Symbol] = {}
-        self.count = 0
 
     def present(self, x: Value, distance: Value | None) -> Value:
         """Return x: points at their lamp or eye are handled at the end."""
@@ -134,11 +98,14 @@ class Writer(Algebra, Language):
         """Return the symbol of an expression, which is written once."""
         # The text of an expression tells which it is: a common part of two terms is computed once.
         if (text, kind) not in self.names:
-            self.count += 1
-            name = f"{self.prefix}{self.count}"
+            name = f"viz{len(self.names) + 1}"
             self.names[text, kind] = Symbol(self, name, kind)
-            self.lines.append(self.statement(name, text, kind))
+            self.lines.append(f"  {kind} {name} = {text};")
         return self.names[text, kind]
+
+    def kind(self, *args: Value) -> str:
+        """Return "vec3" if one of the values is a vector, else "float"."""
+        return "vec3" if any(getattr(a, "kind", "") == "vec3" for a in args) else "float"
 
     def operation(self, sign: str, a: Value, b: Value) -> Value:
         """Write an operation of two values; factors of 1 and summands of 0 are left out."""
@@ -148,17 +115,32 @@ class Writer(Algebra, Language):
                 if getattr(test, "kind", "") == "bool":
                     return self.select(test, value, 0.0)
         if sign in "+*":
-            for number, other in ((a, b), (b, a)):
+            for neutral, other in ((a, b), (b, a)):
                 # The truth is the neutral number: 1 for products, 0 for sums.
-                if isinstance(number, float) and number == (sign == "*"):
+                if isinstance(neutral, float) and neutral == (sign == "*"):
                     return other
-        kind = self.kind(a, b)
-        text = f"{self.text(a, kind)} {sign} {self.text(b, kind)}"
-        return self.named(text, "bool" if sign in _TESTS else kind)
+        text = f"{self.text(a)} {sign} {self.text(b)}"
+        return self.named(text, "bool" if sign in _TESTS else self.kind(a, b))
 
-    def text(self, value: Value, kind: str) -> str:
-        """Return a value as it stands in an expression of a kind."""
-        return value.text if isinstance(value, Symbol) else self.literal(float(value), kind)
+    def call(self, name: str, *args: Value) -> Value:
+        """Return a function of numbers or vectors."""
+        # GLSL's functions take vectors and numbers alike, as NumPy's do.
+        texts = ", ".join(map(self.text, args))
+        return self.named(f"{_CALLS.get(name, name)}({texts})", self.kind(*args))
+
+    def select(self, test: Symbol, yes: Value, no: Value) -> Value:
+        """Return one of two values."""
+        # Both sides are evaluated; a branch would cost more on most cards.
+        text = f"{test.text} ? {self.text(yes)} : {self.text(no)}"
+        return self.named(text, self.kind(yes, no))
+
+    def power(self, x: Value, deficit: Value, exponent: Value) -> Value:
+        """Return a number of [0, 1] to a power."""
+        raise NotImplementedError
+
+    def text(self, value: Value) -> str:
+        """Return a value as it stands in an expression."""
+        return value.text if isinstance(value, Symbol) else number(value)
 
 
 def needed(lines: Iterable[str], declared: str, roots: Iterable[str]) -> list[str]:
