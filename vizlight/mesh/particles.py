@@ -162,7 +162,7 @@ FAST = 75
 FEWEST, MOST = 20, 3000
 #: Points of a stroke, length of its head in space as a share of it, and largest step in cell
 #: lengths.
-ROWS, HEAD, STEP = 16, 0.13, 1.0
+ROWS, HEAD, STEP = 20, 0.13, 1.0
 #: Least and largest life of a particle, in the time that its stroke shows.
 LIVES = 1.5, 4.0
 #: Time for which the field runs before the first picture, in the same.
