@@ -20,7 +20,7 @@ from vizlight.looks import film, map_parts, together
 from vizlight.looks import options as look_options
 from vizlight.looks.contents import Contents
 from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces
-from vizlight.looks.recipes.drawing import Case, file_named
+from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, run, source, written
 from vizlight.looks.wishes import even_light, is_whole_earth
@@ -293,7 +293,7 @@ class Look:
             return []
         if keys and not any(key.get("title") for key in keys):
             # Cameras of looks leave room for a title.
-            keys[0]["title"] = _title(self.drawing)
+            keys[0]["title"] = self.drawing.words
         # The key of a lamp that stands somewhere differs from place to place.
         near = any(light.position is not None for light in self.scene.lights)
         # A bar has the colours of the map, in even light.
@@ -359,12 +359,6 @@ class Look:
         text = base64.b64encode(data.getvalue()).decode()
         image = f'<img alt="{html.escape(self.summary)}" src="data:image/png;base64,{text}"/>'
         return f"{image}<pre>{html.escape(str(self))}</pre>"
-
-
-def _title(drawing: Drawing) -> str:
-    """Return the title for a key without one: of a surface the name of its file."""
-    named = file_named(drawing.layers[0].mesh) if drawing.words == "surface" else ""
-    return named or drawing.words
 
 
 def _key_step(plotter: Step, key: dict[str, object]) -> Step:

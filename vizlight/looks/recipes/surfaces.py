@@ -18,6 +18,7 @@ from vizlight.looks.recipes.drawing import (
     Layer,
     colors_of,
     colors_of_kinds,
+    file_named,
     titled,
     unlit,
 )
@@ -50,9 +51,10 @@ def values(case: Case) -> Drawing:
         kinds = kinds_of(mesh.run(), array.name)
         if len(kinds) == 1 and smooth is not None:
             # The surface of a single label is a shape.
-            drawing = surface(replace(case, question="shape", data=mesh))
-            key = drawing.keys[0] | {"title": f"{titled(mesh.run(), array.name)} {kinds[0]:g}"}
-            return replace(drawing, words=f"surface of {array.name} {kinds[0]:g}", keys=[key])
+            shape = replace(case, question="shape", data=mesh)
+            drawing = surface(shape)
+            keys = _keys(shape, drawing.scene, f"{titled(mesh.run(), array.name)} {kinds[0]:g}")
+            return replace(drawing, words=f"surface of {array.name} {kinds[0]:g}", keys=keys)
         inner = _inside(case, array, kinds) if len(kinds) == 1 else None
         if inner is not None:
             drawing = values(replace(case, data=inner, contents=Contents(inner.run())))
@@ -123,12 +125,20 @@ def surface(case: Case) -> Drawing:
     name = case.wishes.part.get("contour")
     words = f"isosurface of {name}" if name else "surface"
     drawn = {"scene": scene, **case.wishes.drawn(light)}
-    # A room needs no key: everybody has seen things in one.
-    key: Keywords = TITLE_ALONE if case.in_room else {"scene": scene}
+    title = words if name else file_named(mesh)
     if name and case.wishes.part.get("level") is not None:
-        key = key | {"title": titled(mesh.run(), name, level=case.wishes.part["level"])}
+        title = titled(mesh.run(), name, level=case.wishes.part["level"])
+    keys = _keys(case, scene, title)
     layers = [Layer(mesh, drawn), *case.edges(camera)]
-    return Drawing(layers, camera, scene, lit, words, [key], kind=mesh)
+    return Drawing(layers, camera, scene, lit, words, keys, kind=mesh)
+
+
+def _keys(case: Case, scene: Step, title: str) -> list[Keywords]:
+    """Return the key of the light of a shape with a title, none for a room without one."""
+    if case.in_room:
+        # A room needs no key: everybody has seen things in one.
+        return [TITLE_ALONE | {"title": title}] if title else []
+    return [{"scene": scene, "title": title}]
 
 
 def plane(case: Case) -> Drawing:
