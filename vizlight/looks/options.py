@@ -244,7 +244,7 @@ def charted(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Conte
     text = charts.suited(mesh, straight=straight, north_up=flows)
     if not text:
         return step, contents
-    own = [text] if text != charts.suited(mesh) else []
+    own = [text] if (straight or flows) and text != charts.suited(mesh) else []
     chart = Step("chart", "vizlight.cartography.chart", step, *own)
     if charts.is_torn(chart.run()):
         return step, contents

@@ -362,14 +362,15 @@ def _of_models(
         got = f"for a surface of {surface.n_points} points, {side}"
         raise ValueError(f"its overlay '{path}' has {expected} {got}")
     (part, points), labels = parts[0], getattr(maps, "label", None)
-    rows = np.asarray(image.dataobj[:, part])
+    # The steps of a series have no names; slices of the proxy read the last one alone.
+    is_series = not hasattr(maps, "name")
+    rows = np.asarray(image.dataobj[-1:, part] if is_series else image.dataobj[:, part])
     kind, absent = (np.int32, 0) if labels is not None else (np.float32, np.nan)
     whole = np.full((len(rows), surface.n_points), absent, dtype=kind)
     whole[:, points] = rows
-    if not hasattr(maps, "name"):
-        # The steps of a series have no names.
-        if len(rows) > 1:
-            _check.warn(f"overlay: '{path}': the last of its {len(rows)} steps is taken")
+    if is_series:
+        if len(maps) > 1:
+            _check.warn(f"overlay: '{path}': the last of its {len(maps)} steps is taken")
         return {"values": whole[-1]}, []
     named = {str(name): row for name, row in zip(maps.name, whole, strict=True)}
     regions = [] if labels is None else [(key, *one) for key, one in labels[0].items()]

@@ -316,19 +316,14 @@ def sheet(mesh: pv.DataSet) -> MapSheet | None:
     if not names or metres is None or not georeference.on_earth(mesh):
         return None
     text = str(mesh.field_data[names[0]][0])
-    plane, outline = projections.of_text(text), _outline(mesh)
-    if plane is None or not np.ptp(outline, axis=0).all():
+    plane = projections.of_text(text)
+    if plane is None or not np.ptp(np.reshape(mesh.bounds, (3, 2))[:2], axis=1).all():
         return None
     words = projections.keywords(text)
     if words.get("proj") == "eqearth" and isinstance(mesh, pv.PolyData):
-        # A surface around the earth ends at the meridian opposite to the middle one.
-        edge = float(words.get("lon_0", 0.0)) + georeference.AROUND / 2
-        south, north = plane.inverse(outline[1:3] * metres)[:, 1]
-        lat = np.linspace(south, north, EDGE_POINTS)
-        side = plane.forward(np.column_stack([np.full_like(lat, edge), lat])) / metres
-        ring = np.concatenate([side, side[::-1] * (-1, 1)])
-        if np.ptp(ring[:, 0]) <= (1 + EDGE) * np.ptp(outline[:, 0]):
-            outline = ring
+        outline = _outline_of_earth(mesh, plane, metres, float(words.get("lon_0", 0.0)))
+    else:
+        outline = _outline(mesh)
     return MapSheet(plane, outline, metres)
 
 
@@ -350,3 +345,17 @@ def _outline(mesh: pv.DataSet) -> Array:
         ring = np.concatenate([grid[0, :-1], grid[:-1, -1], grid[-1, :0:-1], grid[:0:-1, 0]])
     turns = ring[:, 0] * np.roll(ring[:, 1], -1) - ring[:, 1] * np.roll(ring[:, 0], -1)
     return ring if turns.sum() > 0 else ring[::-1]
+
+
+def _outline_of_earth(mesh: pv.PolyData, plane: Projection, metres: float, lon: float) -> Array:
+    """Return the outline of a surface in Equal Earth about a longitude, of no whole earth its box.
+
+    A surface around the earth ends at the meridian opposite to the middle one.
+    """
+    box = _outline(mesh)
+    south, north = plane.inverse(box[1:3] * metres)[:, 1]
+    lat = np.linspace(south, north, EDGE_POINTS)
+    edge = np.full_like(lat, lon + georeference.AROUND / 2)
+    side = plane.forward(np.column_stack([edge, lat])) / metres
+    ring = np.concatenate([side, side[::-1] * (-1, 1)])
+    return ring if np.ptp(ring[:, 0]) <= (1 + EDGE) * np.ptp(box[:, 0]) else box

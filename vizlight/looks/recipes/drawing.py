@@ -706,9 +706,9 @@ def titled_length(mesh: pv.DataSet, name: str) -> str:
     """Return the title of the lengths of vectors: their speed, if their unit or name is of one."""
     title = titled(mesh, name)
     is_speed = title.lower().endswith("/s)") or VELOCITY.fullmatch(name.lower())
-    of = "" if re.match(r"(?i)velocity( \(|$)", title) else f"of {title}"
     # The speed of a velocity is a speed.
-    return f"speed {of or title[9:]}".strip() if is_speed else f"length of {title}"
+    words = re.sub(r"(?i)^of velocity(?= \(|$)", "", f"of {title}").strip()
+    return f"speed {words}".strip() if is_speed else f"length of {title}"
 
 
 def range_of(mesh: pv.DataSet, name: str) -> tuple[float, float]:
