@@ -116,12 +116,33 @@ def test_two_components_are_vectors_in_a_plane_alone():
 
 
 def test_labels_may_be_floats_with_holes():
-    image = pv.ImageData(dimensions=(40, 40, 1))
-    labels = 7.0 * (np.arange(1600) % 40 // 2) + 300
+    image = pv.ImageData(dimensions=(80, 20, 1))
+    labels = 7.0 * (np.arange(1600) % 80 // 4) + 300
     labels[:90] = np.nan
     image["basin"] = labels
     (array,) = Contents(image).arrays
     assert (array.role, array.distinct) == ("kinds", 20)
+
+
+def test_an_only_array_of_numbers_of_regions_is_shown_on_a_map():
+    image = pv.ImageData(dimensions=(80, 20, 1))
+    image["NatIdGrid"] = np.float32(7) * (np.arange(1600) % 80 // 4)
+    (array,) = Contents(image).arrays
+    assert (array.name, array.role) == ("NatIdGrid", "kinds")
+    image["t2m"] = np.sin(np.arange(1600))
+    assert [array.name for array in Contents(image).arrays] == ["t2m"]
+    image.clear_data()
+    image["PointIds"] = np.arange(1600)
+    assert not Contents(image).arrays
+
+
+def test_tones_that_are_read_coarsely_are_no_labels():
+    rng = np.random.default_rng(3)
+    tones = np.repeat(np.cumsum(rng.integers(-9, 10, 800)) % 200 + 20, 2).astype(np.uint8)
+    image = pv.ImageData(dimensions=(80, 20, 1))
+    image["band"] = tones
+    (array,) = Contents(image).arrays
+    assert array.role == "values"
 
 
 def test_labels_need_not_be_in_the_middle_of_an_image():

@@ -27,9 +27,9 @@ GHOSTS = "vtkGhostType"
 SAMPLE = 20_000
 #: Share of the rows of an array of kinds that is nearly all of them.
 NEARLY_ALL = 0.97
-#: Largest share of runs of equal labels that have one row only: regions are larger than that, while
-#: the edges of a scan pass through all its values.
-ALONE = 0.5
+#: Least rows of a run of equal labels, in the mean: regions are larger than that, while the edges of
+#: a scan pass through all its values.
+LEAST_RUN = 3.0
 #: Extent across a flat surface, across a slab that is taken for one, and across a slab that is seen
 #: from above, as a share of the second side.
 FLAT, SLAB, LAYER = 1e-6, 0.01, 0.15
@@ -262,8 +262,10 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
             if of_cells and GHOSTS in data:
                 # Cells that are hidden, such as those that others refine.
                 values = values[np.asarray(data[GHOSTS]) == 0]
-            # A kind that its file names is a datum, though it be the only one.
-            named = not meaning.flags(mesh, name)
+            # A kind that its file names is a datum, though it be the only one, as are the regions
+            # of a map that has no other array.
+            regions = mesh.n_arrays == len(mesh.field_data) + 1 and _are_regions(mesh, values)
+            named = not meaning.flags(mesh, name) and not regions
             array = _described(name, values, of_cells=of_cells, named=named)
             said = _words_of(mesh, name)
             if array is not None and array.role == "values" and meaning.flags(mesh, name):
@@ -404,11 +406,19 @@ def _are_labels(values: Raw) -> bool:
     inside = (run[1:] != 0) & (run[:-1] != 0)
     steps = np.abs(np.diff(run))[inside]
     changes = np.flatnonzero(np.diff(run))
-    alone = np.diff(changes)[run[changes[1:]] != 0] == 1
-    if np.sum(alone) > ALONE * len(alone):
+    lengths = np.diff(changes)[run[changes[1:]] != 0]
+    if len(lengths) and np.mean(lengths) < LEAST_RUN:
         return False
     jumps = steps[steps > 0]
     return len(jumps) > 0 and float(np.median(jumps)) > 1
+
+
+def _are_regions(mesh: pv.DataSet, values: Raw) -> bool:
+    """Return whether an array of a flat mesh has whole numbers that are labels."""
+    known = values[np.isfinite(values)] if values.ndim == 1 and values.dtype.kind in "fiu" else []
+    is_flat = mesh.bounds_size[2] == 0
+    whole = is_flat and len(known) > 0 and np.all(known == np.round(known))
+    return bool(whole) and _are_labels(values)
 
 
 def kinds_of(mesh: pv.DataSet, name: str, most: int | None = None) -> Sequence[float]:

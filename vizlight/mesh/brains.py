@@ -406,10 +406,11 @@ def _gifti(path: Path) -> tuple[Foreign, Foreign, dict[str, AnyArray], list[str]
 def _transform(part: Foreign) -> list[str]:
     """Return the note on a frame in which a GIFTI file says that its points can be put."""
     system = part.coordsys
-    if system is None or system.xform is None or np.allclose(system.xform, np.eye(4)):
+    turn = np.eye(4) if system is None or system.xform is None else np.reshape(system.xform, (4, 4))
+    if np.allclose(turn, np.eye(4)):
         return _shift([float(part.meta.get(f"VolGeomC_{axis}", 0)) for axis in "RAS"])
     space = _SPACES.get(int(system.xformspace), "another frame")
-    rows = "; ".join(" ".join(f"{number:g}" for number in row) for row in system.xform[:3])
+    rows = "; ".join(" ".join(f"{number:g}" for number in row) for row in turn[:3])
     return [f"points as in the file; its transform to {space}, not applied, is [{rows}]"]
 
 

@@ -484,7 +484,9 @@ class _Reader:
                     continue
                 averaged.append(name)
             self.said.add_array(name, values.attrs)
-            rows = np.asarray(values.transpose(*reversed(dims)).values)
+            # By NumPy, since texts among the coordinates of a variable cannot be transposed.
+            order = [values.dims.index(dim) for dim in reversed(dims)]
+            rows = np.transpose(values.values, order)
             rows, missing = fills.without_missing(name, _within(rows, values.attrs), self.nodata)
             words += [missing] if missing else []
             rows = self._heights(name, rows, values.attrs, flat=len(dims) == 2)

@@ -336,9 +336,13 @@ SUFFIXES = (
 SAMPLE = 100_000
 #: Highest ground of the earth in metres, with some to spare.
 HIGHEST = 9000
-#: Names of bands of satellites and of indices of them, in lower case.
-_SENSOR = re.compile(
-    r"(^|[^a-z])(b(and)?_?\d{1,2}a?|nd[vwsb]i|evi|refl\w*|toa|swir\d?|nir|pan)($|[^a-z0-9])"
+#: Names of bands of satellites, of indices of them, and of other quantities that are no heights, in
+#: lower case.
+_NO_HEIGHTS = re.compile(
+    r"(^|[^a-z])(b(and)?_?\d{1,2}a?|nd[vwsb]i|evi|refl\w*|toa|swir\d?|nir|pan|albedo|radiation|solar"
+    r"|popul\w*|densit\w*|temp\w*|precip\w*|rain\w*|wind\w*|humidity|bio_?\d+|slopes?|aspect|twi"
+    r"|hillshade|flow_?(acc\w*|dir\w*)|prob\w*|conc\w*|soil\w*|risk|hazard|land_?(cover|use))"
+    r"($|[^a-z0-9])"
 )
 #: Channels of a picture in colour.
 _COLORS = ("red", "green", "blue")
@@ -490,8 +494,8 @@ def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str], Ki
         name = file.descriptions[i] or file.tags(i + 1).get("NETCDF_VARNAME") or f"band_{i + 1}"
         unit = _unit(file, i)
         if count == 1 and name == "band_1":
-            # What a camera or a satellite counts has the unit of no length.
-            is_counted = _is_picture(file) or _is_of_sensor(file, stem, rows)
+            # What a camera or a satellite counts, and a density, have the unit of no length.
+            is_counted = _is_picture(file) or _has_no_heights(file, stem, rows)
             unit = unit or ("1" if is_counted else "")
             is_length = not unit or meaning.metres(unit) is not None
             name = "elevation" if is_length and not _of_classes(rows) else stem
@@ -540,10 +544,10 @@ def _is_picture(file: Foreign) -> bool:
     return as_stored and (kind == "uint8" or (kind == "uint16" and _has_no_place(file)))
 
 
-def _is_of_sensor(file: Foreign, stem: str, rows: Raw) -> bool:
-    """Return whether a band is one of a satellite, by its name or by counts beyond all heights."""
+def _has_no_heights(file: Foreign, stem: str, rows: Raw) -> bool:
+    """Return whether a band is no heights by its name, or by counts beyond all heights."""
     counts = file.dtypes[0] == "uint16" and float(np.nanmax(rows, initial=0)) > HIGHEST
-    return counts or _SENSOR.search(stem.lower()) is not None
+    return counts or _NO_HEIGHTS.search(stem.lower()) is not None
 
 
 def _has_no_place(file: Foreign) -> bool:
