@@ -277,3 +277,16 @@ def test_flow_on_a_surface_is_its_evenly_spaced_strokes():
     assert look.mesh.n_lines == strokes.mesh.run().n_lines
     assert np.ptp(look.mesh["luminance"]) > 0
     assert len(vizlight.look(grid, "flow", spacing=3.0).drawing.layers) > 2
+
+
+def test_walls_toward_the_eye_are_left_out_whatever_the_order_of_corners():
+    volume = pv.ImageData(dimensions=(7, 7, 7)).cast_to_unstructured_grid()
+    volume["wind"] = np.column_stack([1 + volume.points[:, 1], *np.zeros((2, volume.n_points))])
+    turned = volume.cells.reshape(-1, 9)[:, [0, 5, 6, 7, 8, 1, 2, 3, 4]]
+    inward = pv.UnstructuredGrid(turned, volume.celltypes, volume.points)
+    inward["wind"] = volume["wind"]
+    sides = []
+    for mesh in (volume, inward):
+        layers = vizlight.look(mesh).drawing.layers
+        sides += [layer.keywords["culling"] for layer in layers if "culling" in layer.keywords]
+    assert sides == ["front", "back"]

@@ -56,6 +56,10 @@ def test_a_hemisphere_of_the_cortex_has_named_sides_and_a_unit():
     assert brains.hemisphere(mesh.translate((-70, 0, 0))) == "left"
     assert brains.hemisphere(mesh.translate((-35, 0, 0))) == ""
     assert brains.hemisphere(mesh.scale(0.1)) == ""
+    # One that is inflated lies around the origin, and is larger.
+    inflated = mesh.scale(1.4).translate(-1.4 * np.array(mesh.center))
+    inflated.rename_array("thickness", "lh.thickness")
+    assert brains.hemisphere(inflated) == "left"
     drawing = vizlight.look(mesh).drawing
     blocks = drawing.layers[0].mesh.arguments[0].run()
     assert blocks.keys() == ["Right hemisphere, lateral", "Right hemisphere, medial"]

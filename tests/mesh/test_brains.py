@@ -124,8 +124,11 @@ def test_frames_other_than_that_of_the_points_are_noted(tmp_path):
     image = nibabel.load(tmp_path / "a.surf.gii")
     assert meaning.line(vizlight.read(tmp_path / "a.surf.gii")) == ""
     image.darrays[0].coordsys = nibabel.gifti.GiftiCoordSystem(1, 3, 2 * np.eye(4))
-    nibabel.save(image, tmp_path / "b.surf.gii")
-    assert "to Talairach, not applied" in meaning.line(vizlight.read(tmp_path / "b.surf.gii"))
+    # Some write the rows of a transform one after the other.
+    for turn in (2 * np.eye(4), 2 * np.eye(4).ravel()):
+        image.darrays[0].coordsys.xform = turn
+        nibabel.save(image, tmp_path / "b.surf.gii")
+        assert "to Talairach, not applied" in meaning.line(vizlight.read(tmp_path / "b.surf.gii"))
 
 
 def test_values_for_another_surface_are_an_error(tmp_path):

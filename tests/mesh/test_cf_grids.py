@@ -387,6 +387,41 @@ def test_dates_of_steps_and_of_an_only_time():
     assert vizlight.read(moment).field_data["TimeValue"][0] == 59
 
 
+def test_texts_at_the_places_of_a_grid_are_no_hindrance(tmp_path):
+    names = np.array([[b"one", b"two"]] * 3)
+    data = xr.Dataset({"t": (("y", "x"), np.arange(6.0).reshape(3, 2))}, axes_of(y=(range(3),)))
+    data.assign_coords(names=(("y", "x"), names)).to_netcdf(tmp_path / "a.nc")
+    np.testing.assert_array_equal(vizlight.read(tmp_path / "a.nc")["t"], np.arange(6))
+
+
+@pytest.mark.parametrize(
+    ("name", "attributes", "scale", "step", "unit"),
+    [
+        ("data", {}, 4000, 1e-3, "m"),
+        ("data", {}, 14000, 1e-3, "ft"),
+        ("Band1", {"long_name": "GDAL Band Number 1"}, 4000, 1e-3, "m"),
+        ("data", {}, 40000, 1e-3, ""),
+        ("data", {}, 90, 1e-3, ""),
+        ("data", {"units": "K"}, 4000, 1e-3, ""),
+        ("data", {}, 4000, 0.5, ""),
+        ("rain", {}, 4000, 1e-3, ""),
+    ],
+)
+def test_an_only_array_without_a_name_on_a_fine_map_is_of_the_ground(
+    name, attributes, scale, step, unit
+):
+    rows = scale * np.linspace(0, 1, 20).reshape(4, 5)
+    coords = {
+        "lat": ("lat", 40 + step * np.arange(4), {"units": "degrees_north"}),
+        "lon": ("lon", 10 + step * np.arange(5), {"units": "degrees_east"}),
+    }
+    mesh = grid({name: (("lat", "lon"), rows, attributes)}, coords)
+    assert ("taken for heights" in meaning.line(mesh)) == bool(unit)
+    if unit:
+        np.testing.assert_allclose(mesh[name], rows.ravel() * (0.3048 if unit == "ft" else 1))
+        assert meaning.of(mesh).arrays[name] == {"long_name": "elevation", "units": "m"}
+
+
 @pytest.mark.parametrize("kind", ["f2", "longdouble", "O", ">f4"])
 def test_numbers_of_types_that_vtk_lacks(kind):
     rows = np.arange(20.0).reshape(4, 5)

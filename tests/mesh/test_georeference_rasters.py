@@ -154,7 +154,13 @@ def test_a_picture_of_a_camera_is_no_relief(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("name", "rows"), [("scene_B4", HEIGHTS), ("ndvi_2020", HEIGHTS / 1e4), ("a", HEIGHTS * 40)]
+    ("name", "rows"),
+    [
+        ("scene_B4", HEIGHTS),
+        ("ndvi_2020", HEIGHTS / 1e4),
+        ("a", HEIGHTS * 40),
+        ("population-density", HEIGHTS),
+    ],
 )
 def test_a_band_of_a_satellite_is_no_relief(tmp_path, name, rows):
     kind = np.float32 if name.startswith("ndvi") else np.uint16

@@ -27,8 +27,8 @@ GHOSTS = "vtkGhostType"
 SAMPLE = 20_000
 #: Share of the rows of an array of kinds that is nearly all of them.
 NEARLY_ALL = 0.97
-#: Least rows of a run of equal labels, in the mean: regions are larger than that, while the edges of
-#: a scan pass through all its values.
+#: Least rows of a run of equal labels, in the mean: regions are larger than that, while the edges
+#: of a scan pass through all its values.
 LEAST_RUN = 3.0
 #: Extent across a flat surface, across a slab that is taken for one, and across a slab that is seen
 #: from above, as a share of the second side.
@@ -415,10 +415,10 @@ def _are_labels(values: Raw) -> bool:
 
 def _are_regions(mesh: pv.DataSet, values: Raw) -> bool:
     """Return whether an array of a flat mesh has whole numbers that are labels."""
-    known = values[np.isfinite(values)] if values.ndim == 1 and values.dtype.kind in "fiu" else []
-    is_flat = mesh.bounds_size[2] == 0
-    whole = is_flat and len(known) > 0 and np.all(known == np.round(known))
-    return bool(whole) and _are_labels(values)
+    if values.ndim != 1 or values.dtype.kind not in "fiu" or mesh.bounds_size[2]:
+        return False
+    known = np.asarray(values[np.isfinite(values)], dtype=np.float64)
+    return len(known) > 0 and bool(np.all(known == np.round(known))) and _are_labels(values)
 
 
 def kinds_of(mesh: pv.DataSet, name: str, most: int | None = None) -> Sequence[float]:

@@ -43,6 +43,7 @@ MEASURES = {
 }  # fmt: skip
 #: Words of names that say the side alone.
 _SIDE = re.compile(r"left|right|[lr]h?")
+_NAMED_SIDE = re.compile(r"(?i)(?:^|[\W_])([lr])h[\W_]")
 #: Largest cosine between axes that are at right angles: affines are in float32.
 SQUARE = 1e-5
 #: First bytes of a surface of triangles and of quadrangles, and of numbers for its points.
@@ -95,8 +96,9 @@ def word_and_unit(name: str) -> tuple[str, str]:
 def hemisphere(surface: pv.DataSet) -> str:
     """Return which hemisphere of the cortex a surface is, left or right; empty for all else.
 
-    It is known by its size in mm, the side of the middle on which it lies, x to the right, a
-    surface without handles, and the number of its points or the name of an array.
+    It is known by the name of an array that FreeSurfer makes, with its side, such as lh.curv; else
+    by its size in mm, the side of the middle on which it lies, x to the right, a surface without
+    handles, and the number of its points or the name of an array.
 
     Parameters
     ----------
@@ -105,8 +107,10 @@ def hemisphere(surface: pv.DataSet) -> str:
     """
     if not isinstance(surface, pv.PolyData) or surface.n_cells != 2 * surface.n_points - 4:
         return ""
-    is_template = surface.n_points in TEMPLATES
-    if not is_template and not any(word_and_unit(name)[0] for name in surface.point_data):
+    measures = [name for name in surface.point_data if word_and_unit(name)[0]]
+    if said := _NAMED_SIDE.search(" ".join(measures)):
+        return "left" if said[1].lower() == "l" else "right"
+    if surface.n_points not in TEMPLATES and not measures:
         return ""
     bounds = np.reshape(surface.bounds, (3, 2))
     if any(

@@ -102,6 +102,9 @@ _HEIGHTS = (
     r"|.*depth.*"
 )
 _DEPTHS = r"(sea_floor_depth|depth).*|.*_depth(_below.*)?"
+#: Largest step of a map of the ground in degrees, and least difference of its heights in metres:
+#: finer maps of one variable without a name are mostly of the ground.
+FINE, LEAST_RELIEF = 0.02, 100.0
 #: Names of arrays that are no values on a grid: corners of cells and mappings.
 _ASIDE = re.compile(r".*(_bnds|_bounds|_vertices)|crs|spatial_ref", re.IGNORECASE)
 
@@ -156,6 +159,20 @@ class _Axis:
     words: str
     kind: str
     scale: meaning.AxisScale
+
+
+def _may_be_ground(name: str, values: Foreign, axes: Sequence[_Axis]) -> bool:
+    """Return whether values on a fine map in degrees have a name that says nothing."""
+    words = {"units", "standard_name"} & values.attrs.keys()
+    text = str(values.attrs.get("long_name", ""))
+    is_fine = all(
+        axis.kind == "degrees" and np.ptp(axis.ticks) < FINE * (len(axis.ticks) - 1)
+        for axis in axes
+    )
+    return (
+        is_fine and not words and (not text or "Band Number" in text)  # as GDAL writes it
+        and (meaning.is_of_reader(name) or name.lower().startswith("band"))
+    )  # fmt: skip
 
 
 def is_grid(value: object) -> bool:
@@ -483,13 +500,14 @@ class _Reader:
                 if values is None:
                     continue
                 averaged.append(name)
-            self.said.add_array(name, values.attrs)
+            attributes = self._attributes(name, values, axes, alone=len(fields) == 1)
+            self.said.add_array(name, attributes)
             # By NumPy, since texts among the coordinates of a variable cannot be transposed.
             order = [values.dims.index(dim) for dim in reversed(dims)]
             rows = np.transpose(values.values, order)
-            rows, missing = fills.without_missing(name, _within(rows, values.attrs), self.nodata)
+            rows, missing = fills.without_missing(name, _within(rows, attributes), self.nodata)
             words += [missing] if missing else []
-            rows = self._heights(name, rows, values.attrs, flat=len(dims) == 2)
+            rows = self._heights(name, rows, attributes, flat=len(dims) == 2)
             for i, axis in enumerate(axes):
                 rows = np.take(rows, axis.order, axis=rows.ndim - 1 - i)
             grid.point_data[name] = np.ascontiguousarray(rows).ravel()
@@ -1017,6 +1035,26 @@ class _Reader:
             axis.words += f" in {unit}" if unit else ""
             _set_ticks(axis, ticks, "" if said else "index")
         return axis
+
+    def _attributes(
+        self, name: str, values: Foreign, axes: Sequence[_Axis], *, alone: bool
+    ) -> dict[str, str]:
+        """Return the attributes of values; of those without any that can be heights, these words.
+
+        Only those that are alone on a fine map are taken for the ground.
+        """
+        said: dict[str, str] = values.attrs
+        if not alone or not _may_be_ground(name, values, axes):
+            return said
+        rows = values.values
+        low, high = float(np.nanmin(rows)), float(np.nanmax(rows))
+        unit = "m" if high < georeference.HIGHEST else "ft"
+        scale = meaning.metres(unit) or 1.0
+        is_relief = -georeference.DEEPEST < scale * low < scale * high - LEAST_RELIEF
+        if not is_relief or scale * high > georeference.HIGHEST:
+            return said
+        self.said.notes.append(f"{name!r} has no name or unit, and is taken for heights in {unit}")
+        return said | {"long_name": "elevation", "units": unit}
 
     def _heights(self, name: str, rows: Raw, attributes: Foreign, *, flat: bool) -> Raw:
         """Return heights in metres and up; other values, and all in a volume, as they are."""

@@ -334,8 +334,8 @@ SUFFIXES = (
 )  # fmt: skip
 #: Pixels whose values are looked at.
 SAMPLE = 100_000
-#: Highest ground of the earth in metres, with some to spare.
-HIGHEST = 9000
+#: Highest and deepest ground of the earth in metres, with some to spare.
+HIGHEST, DEEPEST = 9000, 12_000
 #: Names of bands of satellites, of indices of them, and of other quantities that are no heights, in
 #: lower case.
 _NO_HEIGHTS = re.compile(
