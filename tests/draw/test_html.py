@@ -471,6 +471,8 @@ def test_lines_of_a_page_have_the_halos_and_widths_of_the_picture(opened, tmp_pa
     back["share"], front["share"] = [1.0, 1.0], [0.2, 1.0]
     for line in (front, back):
         plotter.vizlight.add_mesh(line, scene=scene, line_width=16, width="share")
+    outlined = pv.Line((-1, 0.4, 0.5), (1, 0.4, 0.5), resolution=9)
+    plotter.vizlight.add_mesh(outlined, scene=scene, line_width=12, halo="red")
     plotter.view_xy()
     plotter.enable_parallel_projection()
     expected = np.asarray(plotter.screenshot(return_img=True), dtype=np.int16)

@@ -269,8 +269,16 @@ def test_translucent_lines_have_no_halo_unless_it_is_asked_for():
     assert np.any(pictures[2] != pictures[1])
 
 
+@pytest.mark.parametrize("light", ["fragments", "points"])
+def test_a_halo_in_a_colour_is_narrower(light):
+    column = crossing(1.0, light=light, ground="white", halo="black")[:, 99]
+    # 0.45 of 5 pixels on each side of rows 97 to 102.
+    assert column[[96, 103]] == pytest.approx(0, abs=0.02)
+    assert column[[80, 93, 106, 120]] == pytest.approx(0.4, abs=0.02)
+
+
 @pytest.mark.parametrize("halo", [-1, "wide", np.nan])
-def test_a_halo_is_a_width(halo):
+def test_a_halo_is_a_width_or_a_colour(halo):
     plotter = pv.Plotter(off_screen=True)
     with pytest.raises((TypeError, ValueError), match="halo: expected"):
         plotter.vizlight.add_mesh(pv.Line(), scene=WHITE, halo=halo)

@@ -78,7 +78,7 @@ class Component:
         light: LightAt = "auto",
         scalars: str | ArrayLike | None = None,
         line_diameter: float | None = None,
-        halo: bool | float | None = None,
+        halo: bool | float | str | None = None,
         width: str | None = None,
         **options: Given,
     ) -> pv.Actor | list[pv.Actor]:
@@ -110,11 +110,13 @@ class Component:
         line_diameter : float, optional
             Diameter of lines in the unit of the mesh, at least a pixel, in place of PyVista's
             ``line_width`` in pixels: nearer lines are wider.
-        halo : bool or float, optional
+        halo : bool, float or str, optional
             Band of the colour of the ground on each side of lines, which tells the line in front
-            where two cross: its width in widths of the line, or False for none. It is the deeper
-            the farther it is from its line, up to 4 widths of the line, so that lines that run
-            together have no gap. On a light ground the rim of lines that are nearly as light is
+            where two cross: its width in widths of the line, or False for none. A colour, such as
+            ``"black"``, draws a narrower one in it, 0.45 widths and at least 1.2 pixels: an outline
+            for dense lines, which bands of the ground's colour would cut to pieces. A band is the
+            deeper the farther it is from its line, up to 4 widths of the line, so that lines that
+            run together have no gap. On a light ground the rim of lines that are nearly as light is
             darker, but of colours of data. Lines with halos have round ends and joints, and are
             drawn nearer to the eye by their own width, so that a surface on which they lie does not
             hide them. Default: one width, at least 2 pixels; none for lines of an opacity below 1.
@@ -736,13 +738,15 @@ class Component:
 def _check_lines(
     mesh: pv.DataSet | pv.MultiBlock,
     line_diameter: float | None,
-    halo: bool | float | None,
+    halo: bool | float | str | None,
     width: str | None,
 ) -> Keywords:
     """Return the keywords of how lines are drawn, checked."""
     if line_diameter is not None:
         line_diameter = _check.positive("line_diameter", line_diameter)
-    if halo is not None and not isinstance(halo, bool):
+    if isinstance(halo, str):
+        _check.color("halo", halo)
+    elif halo is not None and not isinstance(halo, bool):
         halo = _check.number("halo", halo, low=0.0, high=100.0)
     if width is not None:
         width = _check.text("width", width, expected="the name of a point array")

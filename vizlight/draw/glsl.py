@@ -337,16 +337,19 @@ class Stroke(NamedTuple):
     round : bool
         Whether each fragment has the normal of the cylinder that the line stands for.
     halo : float
-        Width of the band of the ground's colour on each side of a line, in widths of the line.
+        Width of the band on each side of a line, in widths of the line.
     width : str or None
         Name of the point array of widths, as shares from 0 to 1 of the width of the line; None for
         lines of one width.
+    outline : str or None
+        Colour of the band; None for that of the ground.
     """
 
     diameter: float | None = None
     round: bool = False
     halo: float = 0.0
     width: str | None = None
+    outline: str | None = None
 
 
 #: Direction of the line at a vertex; its array takes the place of normals.

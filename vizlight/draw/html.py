@@ -186,6 +186,9 @@ class Page:
             entry |= self._followed(live, scene, actor, matrix)
         else:
             entry |= self._fixed(shown, scene, ids)
+        if live.stroke.outline is not None:
+            numbers = cast("dict[str, object]", entry.setdefault("numbers", {}))
+            numbers["ownGround"] = list(pv.Color(live.stroke.outline).float_rgb)
         self.meshes.append(entry)
 
     def add_values(self, every: Sequence[PageMesh]) -> None:

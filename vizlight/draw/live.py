@@ -311,7 +311,7 @@ class Live:
             self.source, self._placed = source, None
         self.show(scene, renderer, actor)
         if self.stroke != Stroke():
-            strokes.adapt(actor, renderer, of_data=self.scalars is not None)
+            strokes.adapt(actor, renderer, self.stroke, of_data=self.scalars is not None)
 
     def _state_of(self, renderer: vtkRenderer, actor: vtkActor) -> tuple[object, ...]:
         """Return the state on which the light depends, in a form that can be compared."""

@@ -117,7 +117,7 @@ class PlotterKeywords(TypedDict, total=False):
     line_width: float
     line_diameter: float | None
     render_lines_as_tubes: bool
-    halo: bool | float
+    halo: bool | float | str
     anti_aliasing: AntiAliasing | None
     backend: Backend | None
     light: PictureLight
@@ -139,7 +139,7 @@ def make_plotter(
     line_width: float = 1.0,
     line_diameter: float | None = None,
     render_lines_as_tubes: bool = False,
-    halo: bool | float = False,
+    halo: bool | float | str = False,
     anti_aliasing: AntiAliasing | None = "auto",
     backend: Backend | None = None,
     light: PictureLight = "auto",
@@ -182,10 +182,10 @@ def make_plotter(
         they stand for: its mean is the light of ``model="cylinder"``. Lines keep their own light
         where it cannot be computed in each fragment, as with ``light="points"``, on a surface that
         conditions it, or in a bundle.
-    halo : bool or float, default: False
+    halo : bool, float or str, default: False
         Band of the colour of the background on each side of lines, which tells the line in front
         where two cross, as for ``plotter.vizlight.add_mesh``: its width in widths of the line, or
-        True for one width, at least 2 pixels.
+        True for one width, at least 2 pixels, or a colour for an outline in it.
     anti_aliasing : {"auto", "ssaa", "msaa", "fxaa"} or None, default: "auto"
         Method of anti-aliasing: supersampling, multisampling, FXAA, or none. "auto" is
         supersampling for lines, which are then drawn narrower than a pixel, else multisampling,
@@ -226,7 +226,9 @@ def make_plotter(
     if line_diameter is not None:
         line_diameter = _check.positive("line_diameter", line_diameter)
     tubes = _check.boolean("render_lines_as_tubes", render_lines_as_tubes)
-    if not isinstance(halo, bool):
+    if isinstance(halo, str):
+        _check.color("halo", halo)
+    elif not isinstance(halo, bool):
         halo = _check.number("halo", halo, low=0.0, high=100.0)
     meshes = pv.MultiBlock([block for panel in shown for block in all_blocks(panel.mesh)])
     back = pv.Color(_check.color("background", background) or backdrop(meshes))
@@ -481,7 +483,7 @@ def _draw(
         )
         if stroke != Stroke():
             widen(actor, stroke)
-            adapt(actor, plotter.renderer, of_data=panel.scalars != DEFAULT_NAME)
+            adapt(actor, plotter.renderer, stroke, of_data=panel.scalars != DEFAULT_NAME)
         else:
             enlarge(actor, plotter.renderer)
         if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":

@@ -35,6 +35,8 @@ SHARPEST, SHARPEST_HALO = 0.5, 0.85
 AT_END = 1.75
 #: Width of a halo on each side in widths of the line, and its least width in pixels.
 WIDTHS, PIXELS = 1.0, 2.0
+#: The same of one in a colour, an outline.
+OUTLINE_WIDTHS, OUTLINE_PIXELS = 0.45, 1.2
 #: Depth of the border of a halo behind its line, in widths of the line: lines farther apart than
 #: that have a gap of the whole width of the halo.
 DEPTH = 4.0
@@ -95,7 +97,7 @@ def check_widths(mesh: pv.DataSet, name: str) -> None:
         raise ValueError(_check.message("width", expected, got))
 
 
-def with_halo(stroke: Stroke, line_width: float, halo: float | None) -> Stroke:
+def with_halo(stroke: Stroke, line_width: float, halo: float | str | None) -> Stroke:
     """Return a stroke with a halo.
 
     Parameters
@@ -103,17 +105,33 @@ def with_halo(stroke: Stroke, line_width: float, halo: float | None) -> Stroke:
     stroke : Stroke
     line_width : float
         Width of the lines in pixels, where they have no diameter.
-    halo : float or None
+    halo : float, str or None
         Width of the halo on each side, in widths of the line. None for one width, or 2 pixels where
-        that is more.
+        that is more; a colour for a narrower one in it.
 
     Returns
     -------
     Stroke
     """
-    if halo is None:
-        halo = WIDTHS if stroke.diameter else max(WIDTHS, PIXELS / max(line_width, LEAST))
+    if halo is None or isinstance(halo, str):
+        stroke = stroke._replace(outline=halo)
+        widths, pixels = (WIDTHS, PIXELS) if halo is None else (OUTLINE_WIDTHS, OUTLINE_PIXELS)
+        halo = widths if stroke.diameter else max(widths, pixels / max(line_width, LEAST))
     return stroke._replace(halo=halo) if halo > 0 else stroke
+
+
+def color_of_halo(stroke: Stroke, renderer: vtkRenderer) -> tuple[float, float, float]:
+    """Return the colour of the halos of lines: that of the ground, if they have no other.
+
+    Parameters
+    ----------
+    stroke : Stroke
+    renderer : vtkRenderer
+    """
+    if stroke.outline is not None:
+        return pv.Color(stroke.outline).float_rgb
+    red, green, blue = renderer.GetBackground()
+    return red, green, blue
 
 
 def directions(mesh: pv.DataSet, width: str | None = None) -> Array:
@@ -168,14 +186,14 @@ def widen(actor: vtkActor, stroke: Stroke, last: Iterable[Replacement] = ()) -> 
     replace(actor, [*widened(actor, [*passed, *unlit], stroke), *last])
 
 
-def adapt(actor: vtkActor, renderer: vtkRenderer, *, of_data: bool) -> None:
-    """Give the lines of an actor the background and the pixels of a renderer.
+def adapt(actor: vtkActor, renderer: vtkRenderer, stroke: Stroke, *, of_data: bool) -> None:
+    """Give the lines of an actor the colour of their halos and the pixels of a renderer.
 
     Colours ``of_data`` have no darker rim: it would be read as another value.
     """
     shader = actor.GetShaderProperty()
     fragment = shader.GetFragmentCustomUniforms()
-    fragment.SetUniform3f(GROUND, list(renderer.GetBackground()))
+    fragment.SetUniform3f(GROUND, list(color_of_halo(stroke, renderer)))
     samples = line_samples(renderer)
     fragment.SetUniformf(DARKENED, 0.0 if of_data else DARKER)
     for uniforms in (fragment, shader.GetGeometryCustomUniforms()):

@@ -96,6 +96,9 @@ def test_lines_are_strokes_of_their_width_and_those_behind_end_at_the_halo(plott
     # The line behind is in two parts; the nearer one comes last and is whole.
     assert len(cores) == 3
     assert cores[-1][0] != cores[0][0] == cores[1][0]
+    plotter.vizlight.add_mesh(line, scalars="c", rgb=True, line_width=4, halo="#008000")
+    text = plotter.vizlight.save_graphic(tmp_path / "outlines.svg").read_text()
+    assert "#008000" in re.findall(r'stroke="(#\w+)"', text)
 
 
 def test_words_of_texts_keys_and_bars_are_text(plotter, tmp_path):

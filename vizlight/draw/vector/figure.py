@@ -160,7 +160,7 @@ class _Drawn:
             parts = [self._faces(slice(None), error)]
             fills = [*parts[0][2]]
         courses = [_in_channels(course, 3) for course in self.courses]
-        strokes: list[Item] = [*strokes_of(courses, self.background, error)]
+        strokes: list[Item] = [*strokes_of(courses, error)]
         count, reached = sum(part[0] for part in parts), max(part[1] for part in parts)
         kind = "levels of red, green and blue" if plates else "colours"
         words = f"{count} {kind}, each within {reached:.1f} of 255 of the light"
@@ -204,7 +204,7 @@ class _Drawn:
         size = (columns / self.scale, rows / self.scale)
         picture: list[Item] = [Picture(np.ascontiguousarray(shown), self.place, size, quality)]
         courses = [_in_channels(course, 3) for course in self.courses]
-        strokes: list[Item] = [*strokes_of(courses, self.background, COARSEST)]
+        strokes: list[Item] = [*strokes_of(courses, COARSEST)]
         data = self._written(suffix, picture, strokes, "pixels, strokes and words")
         return _Attempt(data, 0.0, np.inf)
 

@@ -9,11 +9,11 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
 
-from vizlight._types import Array, Bools, Color, Indices
+from vizlight._types import Array, Bools, Indices
 from vizlight.draw.cameras import pixel_sizes
 from vizlight.draw.glsl import Stroke as Style
 from vizlight.draw.live import Live, in_view, matrix_of
-from vizlight.draw.strokes import LEAST, line_samples
+from vizlight.draw.strokes import LEAST, color_of_halo, line_samples
 from vizlight.draw.vector.files import Fill, Polyline
 from vizlight.draw.vector.samples import Samples, actors_of
 from vizlight.geometry.contours.palette import nearest_colors
@@ -84,6 +84,8 @@ class Course(NamedTuple):
         Channels from 0 to 255.
     halo : ndarray, shape (n,)
         Width of the band on each side in pixels; 0 where none is seen.
+    around : ndarray, shape (n, 3)
+        Colour of the band, from 0 to 1.
     """
 
     place: Array
@@ -94,6 +96,7 @@ class Course(NamedTuple):
     seen: Bools
     color: Array
     halo: Array
+    around: Array
 
 
 def lines_of(plotter: pv.BasePlotter, live_of: Callable[[vtkActor], Live | None]) -> list[Lines]:
@@ -209,7 +212,8 @@ def course_of(lines: Lines, samples: Samples, bare: Samples, scale: int) -> Cour
     clear = distance - _distance(_read(bare.depth, place), camera) <= reach
     clear &= colored & (width > BROAD)
     seen |= clear & _near(seen, number[start], width + 1)
-    return Course(place / scale, distance, number[start], ends, width, seen, color, halo)
+    around = np.tile(color_of_halo(style, renderer), (len(place), 1))
+    return Course(place / scale, distance, number[start], ends, width, seen, color, halo, around)
 
 
 def _near(seen: Bools, line: Indices, count: Array) -> Bools:
@@ -313,7 +317,7 @@ def _read(picture: Array, place: Array) -> Array:
     return values
 
 
-def strokes_of(courses: Sequence[Course], ground: Color, error: float) -> Iterator[Polyline | Fill]:
+def strokes_of(courses: Sequence[Course], error: float) -> Iterator[Polyline | Fill]:
     """Yield strokes from the farthest to the nearest, each after its halo.
 
     Those of several widths are their outlines.
@@ -321,8 +325,6 @@ def strokes_of(courses: Sequence[Course], ground: Color, error: float) -> Iterat
     Parameters
     ----------
     courses : sequence of Course
-    ground : (r, g, b)
-        Colour of halos, from 0 to 1.
     error : float
         Largest difference of a colour, in 1/255.
     """
@@ -372,16 +374,17 @@ def strokes_of(courses: Sequence[Course], ground: Color, error: float) -> Iterat
         points, width = every.place[kept], every.width[kept]
         red, green, blue = (centres[kind[begins[run], 0]] / 255).tolist()
         halo = float(np.median(every.halo[here]))
+        around = tuple(every.around[here[0]].tolist())
         side = across[kept]
         if not wide[run] and width.max() <= ALIKE * width.min():
             mean_width = float(np.mean(every.width[here]))
             whole = bool(every.end[here[0]] and every.end[here[-1]])
             if halo > 0:
-                yield Polyline(ground, points, mean_width + 2 * halo)
+                yield Polyline(around, points, mean_width + 2 * halo)
             yield Polyline((red, green, blue), points, mean_width, whole)
         else:
             if halo > 0:
-                yield Fill(ground, [_outline(points, side, width + 2 * halo)])
+                yield Fill(around, [_outline(points, side, width + 2 * halo)])
             yield Fill((red, green, blue), [_outline(points, side, width)])
 
 

@@ -142,7 +142,8 @@ const STROKE = `
   if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
 // A stroke with a halo, or with widths at its points, is a capsule: places and sizes are in pixels, times
 // the w of its corner, so that what is interpolated is linear on the screen. Depths are of what is nearer
-// to the eye by the width of the line, and of the border of its halo, which is behind it.
+// to the eye by the width of the line, and of the border of its halo, which is behind it. Ends go on along
+// the line in depth too, so that of two that join none has its border before the other.
 const CAPSULE = `
   vec4 a = MCPCMatrix * vec4(ownPlaceA, 1.0); vec4 b = MCPCMatrix * vec4(ownPlaceB, 1.0);
   vec2 span = (b.xy / b.w - a.xy / a.w) * ownSize * 0.5;
@@ -150,9 +151,11 @@ const CAPSULE = `
   bool last = gl_VertexID > 1; float flank = float(gl_VertexID % 2) * 2.0 - 1.0; float w = gl_Position.w;
   vec2 halves = 0.5 * ownWide * vec2(ownShareA * turned(ownLeanA, ownPlaceA), ownShareB * turned(ownLeanB, ownPlaceB));
   float reach = (last ? halves.y : halves.x) + ownHalo + 1.0;
-  ownAt = w * vec3(flank * reach, last ? length(span) + reach : -reach, length(span));
+  float far = last ? reach : -reach;
+  ownAt = w * vec3(flank * reach, far + (last ? length(span) : 0.0), length(span));
   ownHalves = w * halves;
-  gl_Position.xy += ((last ? reach : -reach) * way + flank * reach * vec2(-way.y, way.x)) * 2.0 / ownSize * w;
+  gl_Position.xy += (far * way + flank * reach * vec2(-way.y, way.x)) * 2.0 / ownSize * w;
+  gl_Position.z += far / max(length(span), reach) * (b.z / b.w - a.z / a.w) * w;
   #define ROW(m, r) vec3(m[0][r], m[1][r], m[2][r])
   float slope = -length(ROW(MCPCMatrix, 2)) / length(ROW(MCVCMatrix, 2));
   float spread = length(ROW(MCPCMatrix, 1)) / length(ROW(MCVCMatrix, 1));

@@ -73,15 +73,15 @@ def lines(case: Case) -> Drawing:
     mesh = case.data
     camera = case.camera(mesh)
     scene = case.scene(camera)
-    light, width = dict(case.wishes.light), _width(case)
-    drawn: Keywords = {"scene": scene, "line_width": width, **case.wishes.drawn(light)}
+    light, pen = dict(case.wishes.light), _pen(case)
+    drawn: Keywords = {"scene": scene, **pen, **case.wishes.drawn(light)}
     keys: list[Keywords] = [{"scene": scene}]
     words, note = "lines by their heading", ""
     name, array = case.wishes.picture.get("scalars"), case.array
     if name == DIRECTION or (name is None and case.wishes.question == "auto" and array is None):
         lit = case.lit(mesh, scene, **light)
         shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
-        layer = Layer(_by_direction(lit), {**shown, "line_width": width})
+        layer = Layer(_by_direction(lit), shown | pen)
         table = Step("", "vizlight.maps.directions", meaning.ways(mesh.run()))
         key: Keywords = {"question": "value", "cmap": table}
         key["title"] = with_file(mesh, "direction")
@@ -160,11 +160,14 @@ def backbone(case: Case) -> Drawing:
     return replace(drawing, words=f"backbone in the colours of {name}", keys=keys)
 
 
-def _width(case: Case) -> float:
-    """Return the width of lines by their spacing: few are wider than many."""
+def _pen(case: Case) -> Keywords:
+    """Return the width of lines by their spacing, and a dark outline of dense ones.
+
+    Few are wider than many. Halos of the colour of the ground would cut dense ones to pieces.
+    """
     mesh: pv.PolyData = case.data.run()
     if case.wishes.picture.get("line_width") or not isinstance(mesh, pv.PolyData):
-        return case.width
+        return {"line_width": case.width}
     ids, ends = connectivity(mesh.GetLines())
     places = np.asarray(mesh.points, dtype=np.float64)[ids]
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
@@ -172,7 +175,9 @@ def _width(case: Case) -> float:
     columns, rows = case.wishes.size
     length = float(np.nansum(steps)) / (mesh.length or 1.0) * np.hypot(columns, rows)
     widest = COVERED * columns * rows / max(length, 1e-9)
-    return round(float(np.clip(widest, THINNEST * case.width, WIDEST)), 1)
+    thinnest = THINNEST * case.width
+    pen: Keywords = {"line_width": round(float(np.clip(widest, thinnest, WIDEST)), 1)}
+    return pen | {"halo": "black"} if widest < thinnest else pen
 
 
 def points(case: Case) -> Drawing:
