@@ -137,7 +137,7 @@ void main() {
 const STROKE = `
   vec4 a = MCPCMatrix * vec4(ownPlaceA, 1.0); vec4 b = MCPCMatrix * vec4(ownPlaceB, 1.0);
   vec2 way = (b.xy / b.w - a.xy / a.w) * ownSize;
-  vec2 side = dot(way, way) > 1e-12 ? vec2(-way.y, way.x) * inversesqrt(dot(way, way)) : vec2(0.0, 1.0);
+  vec2 side = length(way) > 1e-6 ? normalize(vec2(-way.y, way.x)) : vec2(0.0, 1.0);
   gl_Position.xy += (float(gl_VertexID % 2) * 2.0 - 1.0) * side * ownWide / ownSize * gl_Position.w;
   if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
 // A stroke with a halo, or with widths at its points, is a capsule: places and sizes are in pixels, times
@@ -147,15 +147,15 @@ const STROKE = `
 const CAPSULE = `
   vec4 a = MCPCMatrix * vec4(ownPlaceA, 1.0); vec4 b = MCPCMatrix * vec4(ownPlaceB, 1.0);
   vec2 span = (b.xy / b.w - a.xy / a.w) * ownSize * 0.5;
-  vec2 way = dot(span, span) > 1e-12 ? normalize(span) : vec2(1.0, 0.0);
+  float size = length(span); vec2 way = size > 1e-6 ? span / size : vec2(1.0, 0.0);
   bool last = gl_VertexID > 1; float flank = float(gl_VertexID % 2) * 2.0 - 1.0; float w = gl_Position.w;
   vec2 halves = 0.5 * ownWide * vec2(ownShareA * turned(ownLeanA, ownPlaceA), ownShareB * turned(ownLeanB, ownPlaceB));
   float reach = (last ? halves.y : halves.x) + ownHalo + 1.0;
   float far = last ? reach : -reach;
-  ownAt = w * vec3(flank * reach, far + (last ? length(span) : 0.0), length(span));
+  ownAt = w * vec3(flank * reach, far + (last ? size : 0.0), size);
   ownHalves = w * halves;
   gl_Position.xy += (far * way + flank * reach * vec2(-way.y, way.x)) * 2.0 / ownSize * w;
-  gl_Position.z += far / max(length(span), reach) * (b.z / b.w - a.z / a.w) * w;
+  gl_Position.z += far / max(size, reach) * (b.z / b.w - a.z / a.w) * w;
   #define ROW(m, r) vec3(m[0][r], m[1][r], m[2][r])
   float slope = -length(ROW(MCPCMatrix, 2)) / length(ROW(MCVCMatrix, 2));
   float spread = length(ROW(MCPCMatrix, 1)) / length(ROW(MCVCMatrix, 1));
