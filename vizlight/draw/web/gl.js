@@ -158,9 +158,8 @@ const CAPSULE = `
   gl_Position.z += far / max(size, reach) * (b.z / b.w - a.z / a.w) * w;
   #define ROW(m, r) vec3(m[0][r], m[1][r], m[2][r])
   float slope = -length(ROW(MCPCMatrix, 2)) / length(ROW(MCVCMatrix, 2));
-  float spread = length(ROW(MCPCMatrix, 1)) / length(ROW(MCVCMatrix, 1));
   float focus = float(ROW(MCPCMatrix, 3) != vec3(0.0));
-  float nearer = 2.0 * ownWide * w / (spread * ownSize.y);
+  float nearer = 2.0 * ownWide * w * length(ROW(MCVCMatrix, 1)) / length(ROW(MCPCMatrix, 1)) / ownSize.y;
   vec2 moved = vec2(min(nearer, focus > 0.0 ? 0.5 * w : nearer), -ownDepth * nearer);
   ownDeep = 0.5 * w * ((gl_Position.z + slope * moved) / (w - focus * moved) - gl_Position.z / w);
   if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
