@@ -128,7 +128,7 @@ def _padded(labels: NDArray[np.int32], pad: int) -> NDArray[np.int32]:
 
 
 def _beneath(shown: NDArray[np.int32], reach: int) -> tuple[NDArray[np.int32], NDArray[np.int16]]:
-    """Return labels that go on beneath the background, and the distances there in samples."""
+    """Return labels that go on beneath the background, and distances from it in samples."""
     labels = shown.copy()
     flat, width = labels.ravel(), labels.shape[1]
     depth = np.zeros(labels.shape, dtype=np.int16)

@@ -173,7 +173,7 @@ def _join(labels: NDArray[np.int32], samples: Array, centres: Array, at: tuple[I
 def _trim(labels: NDArray[np.int32], samples: Array, centres: Array, scale: int) -> None:
     """Let colors at the rim of surfaces be those a pixel within.
 
-    Light falls off there within a pixel, which is a mixture with what is beside it.
+    Light falls off within a pixel, which is a mixture with what is beside it.
     """
     shown = labels > 0
     firm = scipy.ndimage.binary_erosion(shown, iterations=max(scale - 1, 1), border_value=1)
