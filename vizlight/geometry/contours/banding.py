@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from vizlight._types import Array, Bools, Indices, Slice
+from vizlight._types import Array, Bools, Foreign, Indices, Slice
 from vizlight.geometry.contours.spacing import LuminanceSteps
 
 Luminance = Callable[[Indices, Indices, Array, Indices], Array]
 
 #: Share of an edge to which a contour point is found, about the rounding of the luminance.
 WIDTH = 2.0**-40
-#: Width of a bracket at which a jump of the luminance is not searched more closely: a change by
-#: more than JUMP of the span of all levels.
-NARROW, JUMP = 2.0**-20, 1e-3
-#: Number of parts that a bracket is divided into, to find where the light ends.
-PARTS = 32
+#: Luminance below that of a contour that stands for its own where places have no light.
+TINY = 2.0**-1000
 #: Share of the edge below which a contour point is merged with the corner.
 SNAP = 1e-11
 #: Number of triangles that are taken at once.
@@ -240,14 +236,7 @@ def _pieces(
     # An edge runs from its lower to its higher index; where the luminance falls on the way, the
     # levels are met from the highest down.
     down = at[of_side, 0] > at[of_side, 1]
-    after = np.cumsum(last - first)
-    row = np.arange(len(level))
-    order = np.where(down, (2 * after - (last - first) - 1)[of_side] - row, row)
-    same = np.diff(edge[of_side]) == 0
-    # At a crease an edge has the contours of two patches, which share it in the order of their
-    # places.
-    if np.any(same & (np.diff(share[order]) < 0)):
-        order = np.lexsort((np.where(down, -level, level), share, edge[of_side]))
+    order = np.lexsort((np.where(down, -level, level), share, edge[of_side]))
     of_side, level, share = of_side[order], level[order], share[order]
     a, b = ends[edge[of_side]].T
     # A contour through a corner of the mesh has no point of its own there.
@@ -392,91 +381,25 @@ def _crossed(
 
     The levels of a side follow each other, the sides follow each other.
     """
+    from scipy.optimize import elementwise
 
-    def above(rows: Indices, places: Array) -> Array:
-        side = of_side[rows]
-        brightness = luminance(ends[side, 0], ends[side, 1], places, patch[side])
-        return brightness - levels[level[rows], np.newaxis]
+    find_root: Foreign = elementwise.find_root
+    known = values[of_side] - levels[level, np.newaxis]
 
-    rising = values[:, 0] < values[:, 1]
-    top, bottom = (pick(values, axis=1)[of_side] - levels[level] for pick in (np.max, np.min))
-    bright = rising[of_side].astype(np.float64)
-    share = np.empty(len(level))
-    # On the side of the lowest luminance there is no slope that leads to the end of the light.
-    flat = bottom == 0
-    rows = np.flatnonzero(flat)
-    share[rows] = _divided(rows, bright[rows], above)
-    rows, jump = np.flatnonzero(~flat), JUMP * float(np.ptp(levels))
-    share[rows] = _rooted(rows, bright[rows], top[rows], bottom[rows], jump, above)
+    def above(share: Array, row: Indices) -> Array:
+        side, corner = of_side[row], known[row]
+        found = luminance(ends[side, 0], ends[side, 1], share[:, np.newaxis], patch[side])[:, 0]
+        found = np.select([share == 0, share == 1], corner.T, found - levels[level[row]])
+        # The lowest luminance is that of all places without light, which are below their contour.
+        return np.where(found > 0, found, np.minimum(found, -TINY))
+
+    bracket = np.zeros(len(level)), np.ones(len(level))
+    tolerances = {"xatol": WIDTH, "xrtol": 0.0}
+    row = np.arange(len(level))
+    share = find_root(above, bracket, args=(row,), tolerances=tolerances).x
     # Where the luminance is not monotone the levels stay in order.
-    same, down = np.diff(of_side) == 0, ~rising[of_side[1:]]
-    # Each round passes a place on by one level only; it ends once no level is before its
-    # predecessor.
-    while True:
-        step = np.where(down, -1, 1) * np.diff(share)
-        turned = np.flatnonzero(same & (step < 0))
-        if not len(turned):
-            return share
-        share[turned + 1] = share[turned]
-
-
-def _divided(rows: Indices, bright: Array, above: Callable[[Indices, Array], Array]) -> Array:
-    """Return where a luminance falls to its lowest value, by division of brackets."""
-    start, size = bright, 1 - 2 * bright
-    share = np.arange(1, PARTS) / PARTS
-    for _ in range(round(math.log(WIDTH, 1 / PARTS))):
-        # All parts of all brackets at once: few calls on many places are faster than many on few.
-        lit = above(rows, start[:, np.newaxis] + share * size[:, np.newaxis]) > 0
-        size = size / PARTS
-        # The first part without light ends the lit part, even if there is light again beyond it.
-        start = start + size * np.logical_and.accumulate(lit, axis=1).sum(axis=1)
-    # A jump as near to a corner as it is searched is at the corner.
-    middle = np.where(start == bright, 0, np.where(start + size == 1 - bright, 1, 0.5))
-    return np.asarray(start + middle * size)
-
-
-def _rooted(
-    rows: Indices, bright: Array, top: Array, bottom: Array, jump: float,
-    above: Callable[[Indices, Array], Array],
-) -> Array:  # fmt: skip
-    """Return where a luminance crosses a level, by Chandrupatla's method."""
-    share = np.empty(len(rows))
-    which = np.arange(len(rows))
-    # The last place, the other end of the bracket, and the place before; with the luminance there.
-    x1, x2, f1, f2 = bright, 1 - bright, top, bottom
-    # The first place by the chord through both ends, as in the rule of false position.
-    t = f1 / (f1 - f2)
-    while len(which):
-        x = x1 + t * (x2 - x1)
-        f = above(rows[which], x[:, np.newaxis])[:, 0]
-        # The new place replaces the end of the bracket whose luminance is on the same side of the
-        # level.
-        same = (f > 0) == (f1 > 0)
-        x3, f3 = np.where(same, x1, x2), np.where(same, f1, f2)
-        x2, f2 = np.where(same, x2, x1), np.where(same, f2, f1)
-        x1, f1 = x, f
-        width = np.abs(x2 - x1)
-        jumps = np.abs(f2 - f1) > jump
-        done = (f1 == 0) | (width <= np.where(jumps, NARROW, WIDTH))
-        # A jump as near to a corner as it is searched is at the corner.
-        end = np.where(np.minimum(x1, x2) == 0, 0, np.where(np.maximum(x1, x2) == 1, 1, x1))
-        root = np.where(jumps & (width <= NARROW), end, np.where(np.abs(f1) <= np.abs(f2), x1, x2))
-        share[which[done]] = root[done]
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
-            # Chandrupatla's test, whether inverse quadratic interpolation stays between the ends;
-            # else the bracket is halved.
-            smooth = (phi * phi < xi) & ((1 - phi) ** 2 < 1 - xi)
-            t = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (
-                f3 - f2
-            )
-        # A step of at least half the width that is aimed at, so that the other end moves too.
-        least = WIDTH / 2 / np.maximum(width, WIDTH)
-        t = np.where(smooth, np.clip(np.nan_to_num(t, nan=0.5), least, 1 - least), 0.5)
-        kept = ~done
-        which, t = which[kept], t[kept]
-        x1, x2, f1, f2 = x1[kept], x2[kept], f1[kept], f2[kept]
-    return share
+    rising = (values[:, 0] < values[:, 1])[of_side]
+    return np.asarray(share[np.lexsort((np.where(rising, share, -share), of_side))])
 
 
 def _walk(

@@ -216,16 +216,12 @@ class _Tree:
         whole, bound = self.combined(segments)
         facets = whole.to_mesh64()
         triangles = np.asarray(facets.tri_verts, np.intp)
-        points = np.asarray(facets.vert_properties, np.float64)[:, :3]
-        same = np.arange(len(points))
-        # manifold3d splits points whose properties differ; in a closed mesh they are one.
-        same[np.asarray(facets.merge_from_vert, np.intp)] = facets.merge_to_vert
-        used, triangles = triangle_mesh.compact(same[triangles])
+        points = np.asarray(facets.vert_properties, np.float64)
         # The number of the exact surface that each triangle came from survives the operation.
         patch = np.asarray(facets.face_id, np.intp)
         self._check_bounded(patch)
         shared = self.surfaces, self.signs, self.shift, self.scale
-        mesh = Mesh(points[used], triangles, patch, *shared)
+        mesh = Mesh(points, triangles, patch, *shared)
         placed = place(mesh, tolerance)
         fits = mesh.volume_missing <= self.allowed(mesh)
         if fits and placed.volume_missing > self.allowed(placed):
