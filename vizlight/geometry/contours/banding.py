@@ -256,7 +256,7 @@ def _pieces(
         # By triangle, band and position; no two are equal, and the numbers are below 2^60.
         many, places = band.max(initial=0) + 1, position.max(initial=0) + 1
         order = np.argsort((triangle * many + band) * places + position)
-        size, corners, first_row = _polygons(triangle[order], band[order], corner[order])
+        size, corners, first_row = polygons(triangle[order], band[order], corner[order])
         which = order[first_row]
         pieces = size, corners, band[which], begin + triangle[which]
         parts.append((*pieces, *_lines(triangle, crossed, corner)))
@@ -317,7 +317,7 @@ def weld(bands: Bands, clusters: Indices) -> Bands:
     owner = np.repeat(np.arange(len(size)), size)
     # The number of a polygon stands for its triangle and for its band, since it has but one of
     # each.
-    size, corners, first = _polygons(owner, owner, clusters[bands.corners])
+    size, corners, first = polygons(owner, owner, clusters[bands.corners])
     cell = owner[first]
     used, lookup = _compact(corners, len(bands.points))
     lines = lookup[clusters[bands.lines]]
@@ -443,9 +443,7 @@ def _walk(
     return tuple(np.concatenate(part) for part in zip(*rows, strict=True))
 
 
-def _polygons(
-    triangle: Indices, band: Indices, corner: Indices
-) -> tuple[Indices, Indices, Indices]:
+def polygons(triangle: Indices, band: Indices, corner: Indices) -> tuple[Indices, Indices, Indices]:
     """Return size, corners and the first row of polygons with at least three corners."""
     new = np.ones(len(triangle), np.bool_)
     new[1:] = (triangle[1:] != triangle[:-1]) | (band[1:] != band[:-1])
