@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -164,34 +163,59 @@ def cut(
     # The triangles that stay whole follow the pieces of the others.
     triangle = np.concatenate([rows[owner], whole])
     band = np.concatenate([cut_band, lowest[whole]])
-    offsets = np.append(0, np.cumsum(np.append(size, np.full(len(whole), 3))))
+    size = np.append(size, np.full(len(whole), 3))
     corners = np.concatenate([cut_corners, triangles[whole].ravel()])
-    count = len(points)
-    used, lookup = _compact(corners, count + len(new))
-    old = np.searchsorted(used, count)
-    cut_points = np.concatenate([points[used[:old]], new[used[old:] - count]])
-    lines = lookup[lines]
+    patch = np.broadcast_to(patch[:1], len(band)) if patch.strides == (0,) else patch[triangle]
+    every = np.concatenate([points, new])
+    bands = assembled(every, (size, corners, band, patch), (lines, levels[line_level]), steps)
+    return bands, triangle
+
+
+def assembled(
+    points: Array, cells: tuple[Indices, ...], lines: tuple[Indices, Array], steps: LuminanceSteps,
+    error: float = float("nan"),
+) -> Bands:  # fmt: skip
+    """Return bands with those of the points that polygons use.
+
+    Parameters
+    ----------
+    points : ndarray, shape (P, 3)
+        Positions.
+    cells : tuple of ndarray of int
+        Number of corners of each polygon, all corners, and band and patch of each polygon.
+    lines : (ndarray of int, shape (S, 2), ndarray, shape (S,))
+        Ends of contour segments, and their luminance.
+    steps : LuminanceSteps
+        Luminance of contours and bands.
+    error : float
+        Largest luminance error.
+    """
+    size, corners, band, patch = cells
+    used = np.zeros(len(points), np.bool_)
+    used[corners] = True
+    number = np.where(used, np.cumsum(used) - 1, -1)
+    ends, levels = number[lines[0]], lines[1]
     # A segment from a point to itself, or one with an end that no polygon uses, is none.
-    kept = np.all(lines >= 0, axis=1) & (lines[:, 0] != lines[:, 1])
-    cut_bands = Bands(
-        points=cut_points,
-        offsets=offsets,
-        corners=corners,
+    kept = np.all(ends >= 0, axis=1) & (ends[:, 0] != ends[:, 1])
+    return Bands(
+        points=points[used],
+        offsets=np.cumsum(np.append(0, size)),
+        corners=number[corners],
         band=band,
         values=steps.values[band],
-        patch=np.broadcast_to(patch[:1], len(band)) if patch.strides == (0,) else patch[triangle],
-        lines=lines[kept],
-        line_levels=levels[line_level[kept]],
+        patch=patch,
+        lines=ends[kept],
+        line_levels=levels[kept],
         steps=steps,
-        error=float("nan"),
+        error=error,
     )
-    return cut_bands, triangle
 
 
 def none(steps: LuminanceSteps, error: float = 0.0) -> Bands:
     """Return the bands of a surface without polygons."""
-    empty, _ = cut(np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty((0, 3)), steps)
-    return dataclasses.replace(empty, error=error)
+    empty = np.empty(0, np.intp)
+    lines = empty.reshape(0, 2), np.empty(0)
+    return assembled(np.empty((0, 3)), (empty,) * 4, lines, steps, error)
 
 
 def edge_codes(triangles: Indices, count: int) -> Indices:
@@ -287,17 +311,6 @@ def _touched(
     return lowest, touched
 
 
-def _compact(corners: Indices, count: int) -> tuple[Indices, Indices]:
-    """Return the points that are used and the new indices, which the corners get in place."""
-    there = np.zeros(count, np.bool_)
-    there[corners] = True
-    lookup = np.where(there, np.cumsum(there) - 1, -1)
-    for start in range(0, len(corners), BLOCK):
-        rows = slice(start, start + BLOCK)
-        corners[rows] = lookup[corners[rows]]
-    return np.flatnonzero(there), lookup
-
-
 def weld(bands: Bands, clusters: Indices) -> Bands:
     """Return bands with the points of each cluster merged.
 
@@ -318,21 +331,9 @@ def weld(bands: Bands, clusters: Indices) -> Bands:
     # The number of a polygon stands for its triangle and for its band, since it has but one of
     # each.
     size, corners, first = polygons(owner, owner, clusters[bands.corners])
-    cell = owner[first]
-    used, lookup = _compact(corners, len(bands.points))
-    lines = lookup[clusters[bands.lines]]
-    kept = lines[:, 0] != lines[:, 1]
-    return dataclasses.replace(
-        bands,
-        points=bands.points[used],
-        offsets=np.concatenate([[0], np.cumsum(size)]),
-        corners=corners,
-        band=bands.band[cell],
-        values=bands.values[cell],
-        patch=bands.patch[cell],
-        lines=lines[kept],
-        line_levels=bands.line_levels[kept],
-    )
+    cells = size, corners, bands.band[owner[first]], bands.patch[owner[first]]
+    lines = clusters[bands.lines], bands.line_levels
+    return assembled(bands.points, cells, lines, bands.steps, bands.error)
 
 
 def _sides(

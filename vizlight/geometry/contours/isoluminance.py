@@ -275,25 +275,18 @@ def _around(
     cell = np.repeat(np.arange(len(quads)), 4)
     # Those with a corner twice are triangles, or none.
     sizes, corners, first = banding.polygons(cell, cell, quads.ravel())
-    band = np.broadcast_to(band, number[1:].shape).ravel()[cell[first]]
-    values = np.append(steps.values[band], [value for _, _, value in ends])
-    used, corners = np.unique(
-        np.concatenate([corners, *(ring for _, ring, _ in ends)]), return_inverse=True
+    strips = np.broadcast_to(band, number[1:].shape).ravel()[cell[first]]
+    patches, rings, values = zip(*ends, strict=True) if ends else ((), (), ())
+    cells = (
+        np.append(sizes, [len(ring) for ring in rings]).astype(np.intp),
+        np.concatenate([corners, *rings]),
+        np.append(strips, steps.band(np.array(values))),
+        np.append(np.zeros_like(strips), patches).astype(np.intp),
     )
-    lines = np.searchsorted(used, contours[0])
-    kept = lines[:, 0] != lines[:, 1]
-    return Bands(
-        points=points[used],
-        offsets=np.cumsum([0, *sizes, *(len(ring) for _, ring, _ in ends)]),
-        corners=corners,
-        band=np.append(band, steps.band(values[len(band) :])),
-        values=values,
-        patch=np.append(np.zeros_like(band), [patch for patch, _, _ in ends]).astype(np.intp),
-        lines=lines[kept],
-        line_levels=steps.edges[contours[1][kept]],
-        steps=steps,
-        error=error,
-    )
+    lines = contours[0], steps.edges[contours[1]]
+    bands = banding.assembled(points, cells, lines, steps, error)
+    # The ends have their own luminance.
+    return dataclasses.replace(bands, values=np.append(bands.values[: len(strips)], values))
 
 
 def truncus(
