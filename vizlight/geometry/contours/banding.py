@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -166,23 +166,25 @@ def cut(
     size = np.append(size, np.full(len(whole), 3))
     corners = np.concatenate([cut_corners, triangles[whole].ravel()])
     patch = np.broadcast_to(patch[:1], len(band)) if patch.strides == (0,) else patch[triangle]
-    every = np.concatenate([points, new])
-    bands = assembled(every, (size, corners, band, patch), (lines, levels[line_level]), steps)
+    bands = assembled(
+        (points, new), (size, corners, band, patch), (lines, levels[line_level]), steps
+    )
     return bands, triangle
 
 
 def assembled(
-    points: Array, cells: tuple[Indices, ...], lines: tuple[Indices, Array], steps: LuminanceSteps,
-    error: float = float("nan"),
+    points: Sequence[Array], cells: tuple[Indices, ...], lines: tuple[Indices, Array],
+    steps: LuminanceSteps, error: float = float("nan"),
 ) -> Bands:  # fmt: skip
     """Return bands with those of the points that polygons use.
 
     Parameters
     ----------
-    points : ndarray, shape (P, 3)
-        Positions.
+    points : sequence of ndarray, shape (P, 3)
+        Positions, one array after the other.
     cells : tuple of ndarray of int
-        Number of corners of each polygon, all corners, and band and patch of each polygon.
+        Number of corners of each polygon, all corners, and band and patch of each polygon. The
+        corners are numbered anew in place.
     lines : (ndarray of int, shape (S, 2), ndarray, shape (S,))
         Ends of contour segments, and their luminance.
     steps : LuminanceSteps
@@ -191,16 +193,21 @@ def assembled(
         Largest luminance error.
     """
     size, corners, band, patch = cells
-    used = np.zeros(len(points), np.bool_)
+    counts = [len(part) for part in points]
+    used = np.zeros(sum(counts), np.bool_)
     used[corners] = True
     number = np.where(used, np.cumsum(used) - 1, -1)
+    for start in range(0, len(corners), BLOCK):
+        rows = slice(start, start + BLOCK)
+        corners[rows] = number[corners[rows]]
+    parts = np.split(used, np.cumsum(counts)[:-1])
     ends, levels = number[lines[0]], lines[1]
     # A segment from a point to itself, or one with an end that no polygon uses, is none.
     kept = np.all(ends >= 0, axis=1) & (ends[:, 0] != ends[:, 1])
     return Bands(
-        points=points[used],
+        points=np.concatenate([part[rows] for part, rows in zip(points, parts, strict=True)]),
         offsets=np.cumsum(np.append(0, size)),
-        corners=number[corners],
+        corners=corners,
         band=band,
         values=steps.values[band],
         patch=patch,
@@ -215,7 +222,7 @@ def none(steps: LuminanceSteps, error: float = 0.0) -> Bands:
     """Return the bands of a surface without polygons."""
     empty = np.empty(0, np.intp)
     lines = empty.reshape(0, 2), np.empty(0)
-    return assembled(np.empty((0, 3)), (empty,) * 4, lines, steps, error)
+    return assembled([np.empty((0, 3))], (empty,) * 4, lines, steps, error)
 
 
 def edge_codes(triangles: Indices, count: int) -> Indices:
@@ -333,7 +340,7 @@ def weld(bands: Bands, clusters: Indices) -> Bands:
     size, corners, first = polygons(owner, owner, clusters[bands.corners])
     cells = size, corners, bands.band[owner[first]], bands.patch[owner[first]]
     lines = clusters[bands.lines], bands.line_levels
-    return assembled(bands.points, cells, lines, bands.steps, bands.error)
+    return assembled([bands.points], cells, lines, bands.steps, bands.error)
 
 
 def _sides(

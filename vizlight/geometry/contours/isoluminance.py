@@ -284,7 +284,7 @@ def _around(
         np.append(np.zeros_like(strips), patches).astype(np.intp),
     )
     lines = contours[0], steps.edges[contours[1]]
-    bands = banding.assembled(points, cells, lines, steps, error)
+    bands = banding.assembled([points], cells, lines, steps, error)
     # The ends have their own luminance.
     return dataclasses.replace(bands, values=np.append(bands.values[: len(strips)], values))
 
