@@ -318,31 +318,6 @@ def _touched(
     return lowest, touched
 
 
-def weld(bands: Bands, clusters: Indices) -> Bands:
-    """Return bands with the points of each cluster merged.
-
-    Parameters
-    ----------
-    bands : Bands
-        Bands to change; they are not modified.
-    clusters : ndarray of int, shape (P,)
-        Index of the point that replaces each point.
-
-    Returns
-    -------
-    Bands
-        Bands without the polygons that lose their area.
-    """
-    size = np.diff(bands.offsets)
-    owner = np.repeat(np.arange(len(size)), size)
-    # The number of a polygon stands for its triangle and for its band, since it has but one of
-    # each.
-    size, corners, first = polygons(owner, owner, clusters[bands.corners])
-    cells = size, corners, bands.band[owner[first]], bands.patch[owner[first]]
-    lines = clusters[bands.lines], bands.line_levels
-    return assembled([bands.points], cells, lines, bands.steps, bands.error)
-
-
 def _sides(
     triangles: Indices, values: Array, patch: Indices
 ) -> tuple[Indices, Indices, Indices, Indices, Array]:
