@@ -81,11 +81,12 @@ def test_bands_are_right_on_the_exact_surface(name, random):
     best, normal = np.full(len(place), np.inf), np.zeros_like(place)
     second = best.copy()
     for part in solid.primitives():
-        for surface in part.surfaces():
-            distance = np.abs(surface.distance(place))
+        surfaces = part.surfaces()
+        for i in range(len(surfaces)):
+            distance = np.abs(surfaces.distance(place, i))
             near = distance < best
             second = np.where(near, best, np.minimum(second, distance))
-            best[near], normal[near] = distance[near], surface.normal(place[near])
+            best[near], normal[near] = distance[near], surfaces.normal(place[near], i)
     # On a bore the outside of the solid is the inside of the cylinder.
     outside = solid.contains(place - 1e-2 * normal) | ~solid.contains(place + 1e-2 * normal)
     normal[~outside] *= -1

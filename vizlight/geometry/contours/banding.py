@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-import dataclasses
 import functools
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from vizlight._types import Array, Bools, Indices, Slice
+from vizlight._types import Array, Bools, Foreign, Indices, Slice
 from vizlight.geometry.contours.spacing import LuminanceSteps
 
 Luminance = Callable[[Indices, Indices, Array, Indices], Array]
 
 #: Share of an edge to which a contour point is found, about the rounding of the luminance.
 WIDTH = 2.0**-40
-#: Width of a bracket at which a jump of the luminance is not searched more closely: a change by
-#: more than JUMP of the span of all levels.
-NARROW, JUMP = 2.0**-20, 1e-3
-#: Number of parts that a bracket is divided into, to find where the light ends.
-PARTS = 32
+#: Luminance below that of a contour that stands for its own where places have no light.
+TINY = 2.0**-1000
 #: Share of the edge below which a contour point is merged with the corner.
 SNAP = 1e-11
 #: Number of triangles that are taken at once.
@@ -168,34 +163,66 @@ def cut(
     # The triangles that stay whole follow the pieces of the others.
     triangle = np.concatenate([rows[owner], whole])
     band = np.concatenate([cut_band, lowest[whole]])
-    offsets = np.append(0, np.cumsum(np.append(size, np.full(len(whole), 3))))
+    size = np.append(size, np.full(len(whole), 3))
     corners = np.concatenate([cut_corners, triangles[whole].ravel()])
-    count = len(points)
-    used, lookup = _compact(corners, count + len(new))
-    old = np.searchsorted(used, count)
-    cut_points = np.concatenate([points[used[:old]], new[used[old:] - count]])
-    lines = lookup[lines]
+    patch = np.broadcast_to(patch[:1], len(band)) if patch.strides == (0,) else patch[triangle]
+    bands = assembled(
+        (points, new), (size, corners, band, patch), (lines, levels[line_level]), steps
+    )
+    return bands, triangle
+
+
+def assembled(
+    points: Sequence[Array], cells: tuple[Indices, ...], lines: tuple[Indices, Array],
+    steps: LuminanceSteps, error: float = float("nan"),
+) -> Bands:  # fmt: skip
+    """Return bands with those of the points that polygons use.
+
+    Parameters
+    ----------
+    points : sequence of ndarray, shape (P, 3)
+        Positions, one array after the other.
+    cells : tuple of ndarray of int
+        Number of corners of each polygon, all corners, and band and patch of each polygon. The
+        corners are numbered anew in place.
+    lines : (ndarray of int, shape (S, 2), ndarray, shape (S,))
+        Ends of contour segments, and their luminance.
+    steps : LuminanceSteps
+        Luminance of contours and bands.
+    error : float
+        Largest luminance error.
+    """
+    size, corners, band, patch = cells
+    counts = [len(part) for part in points]
+    used = np.zeros(sum(counts), np.bool_)
+    used[corners] = True
+    number = np.where(used, np.cumsum(used) - 1, -1)
+    for start in range(0, len(corners), BLOCK):
+        rows = slice(start, start + BLOCK)
+        corners[rows] = number[corners[rows]]
+    parts = np.split(used, np.cumsum(counts)[:-1])
+    ends, levels = number[lines[0]], lines[1]
     # A segment from a point to itself, or one with an end that no polygon uses, is none.
-    kept = np.all(lines >= 0, axis=1) & (lines[:, 0] != lines[:, 1])
-    cut_bands = Bands(
-        points=cut_points,
-        offsets=offsets,
+    kept = np.all(ends >= 0, axis=1) & (ends[:, 0] != ends[:, 1])
+    return Bands(
+        points=np.concatenate([part[rows] for part, rows in zip(points, parts, strict=True)]),
+        offsets=np.cumsum(np.append(0, size)),
         corners=corners,
         band=band,
         values=steps.values[band],
-        patch=np.broadcast_to(patch[:1], len(band)) if patch.strides == (0,) else patch[triangle],
-        lines=lines[kept],
-        line_levels=levels[line_level[kept]],
+        patch=patch,
+        lines=ends[kept],
+        line_levels=levels[kept],
         steps=steps,
-        error=float("nan"),
+        error=error,
     )
-    return cut_bands, triangle
 
 
 def none(steps: LuminanceSteps, error: float = 0.0) -> Bands:
     """Return the bands of a surface without polygons."""
-    empty, _ = cut(np.empty((0, 3)), np.empty((0, 3), np.intp), np.empty((0, 3)), steps)
-    return dataclasses.replace(empty, error=error)
+    empty = np.empty(0, np.intp)
+    lines = empty.reshape(0, 2), np.empty(0)
+    return assembled([np.empty((0, 3))], (empty,) * 4, lines, steps, error)
 
 
 def edge_codes(triangles: Indices, count: int) -> Indices:
@@ -240,14 +267,7 @@ def _pieces(
     # An edge runs from its lower to its higher index; where the luminance falls on the way, the
     # levels are met from the highest down.
     down = at[of_side, 0] > at[of_side, 1]
-    after = np.cumsum(last - first)
-    row = np.arange(len(level))
-    order = np.where(down, (2 * after - (last - first) - 1)[of_side] - row, row)
-    same = np.diff(edge[of_side]) == 0
-    # At a crease an edge has the contours of two patches, which share it in the order of their
-    # places.
-    if np.any(same & (np.diff(share[order]) < 0)):
-        order = np.lexsort((np.where(down, -level, level), share, edge[of_side]))
+    order = np.lexsort((np.where(down, -level, level), share, edge[of_side]))
     of_side, level, share = of_side[order], level[order], share[order]
     a, b = ends[edge[of_side]].T
     # A contour through a corner of the mesh has no point of its own there.
@@ -267,7 +287,7 @@ def _pieces(
         # By triangle, band and position; no two are equal, and the numbers are below 2^60.
         many, places = band.max(initial=0) + 1, position.max(initial=0) + 1
         order = np.argsort((triangle * many + band) * places + position)
-        size, corners, first_row = _polygons(triangle[order], band[order], corner[order])
+        size, corners, first_row = polygons(triangle[order], band[order], corner[order])
         which = order[first_row]
         pieces = size, corners, band[which], begin + triangle[which]
         parts.append((*pieces, *_lines(triangle, crossed, corner)))
@@ -296,54 +316,6 @@ def _touched(
         codes = edge_codes(triangles, int(triangles.max(initial=0)) + 1)
         touched |= np.isin(codes, codes[crossed_sides]).any(axis=1)
     return lowest, touched
-
-
-def _compact(corners: Indices, count: int) -> tuple[Indices, Indices]:
-    """Return the points that are used and the new indices, which the corners get in place."""
-    there = np.zeros(count, np.bool_)
-    there[corners] = True
-    lookup = np.where(there, np.cumsum(there) - 1, -1)
-    for start in range(0, len(corners), BLOCK):
-        rows = slice(start, start + BLOCK)
-        corners[rows] = lookup[corners[rows]]
-    return np.flatnonzero(there), lookup
-
-
-def weld(bands: Bands, clusters: Indices) -> Bands:
-    """Return bands with the points of each cluster merged.
-
-    Parameters
-    ----------
-    bands : Bands
-        Bands to change; they are not modified.
-    clusters : ndarray of int, shape (P,)
-        Index of the point that replaces each point.
-
-    Returns
-    -------
-    Bands
-        Bands without the polygons that lose their area.
-    """
-    size = np.diff(bands.offsets)
-    owner = np.repeat(np.arange(len(size)), size)
-    # The number of a polygon stands for its triangle and for its band, since it has but one of
-    # each.
-    size, corners, first = _polygons(owner, owner, clusters[bands.corners])
-    cell = owner[first]
-    used, lookup = _compact(corners, len(bands.points))
-    lines = lookup[clusters[bands.lines]]
-    kept = lines[:, 0] != lines[:, 1]
-    return dataclasses.replace(
-        bands,
-        points=bands.points[used],
-        offsets=np.concatenate([[0], np.cumsum(size)]),
-        corners=corners,
-        band=bands.band[cell],
-        values=bands.values[cell],
-        patch=bands.patch[cell],
-        lines=lines[kept],
-        line_levels=bands.line_levels[kept],
-    )
 
 
 def _sides(
@@ -392,91 +364,25 @@ def _crossed(
 
     The levels of a side follow each other, the sides follow each other.
     """
+    from scipy.optimize import elementwise
 
-    def above(rows: Indices, places: Array) -> Array:
-        side = of_side[rows]
-        brightness = luminance(ends[side, 0], ends[side, 1], places, patch[side])
-        return brightness - levels[level[rows], np.newaxis]
+    find_root: Foreign = elementwise.find_root
+    known = values[of_side] - levels[level, np.newaxis]
 
-    rising = values[:, 0] < values[:, 1]
-    top, bottom = (pick(values, axis=1)[of_side] - levels[level] for pick in (np.max, np.min))
-    bright = rising[of_side].astype(np.float64)
-    share = np.empty(len(level))
-    # On the side of the lowest luminance there is no slope that leads to the end of the light.
-    flat = bottom == 0
-    rows = np.flatnonzero(flat)
-    share[rows] = _divided(rows, bright[rows], above)
-    rows, jump = np.flatnonzero(~flat), JUMP * float(np.ptp(levels))
-    share[rows] = _rooted(rows, bright[rows], top[rows], bottom[rows], jump, above)
+    def above(share: Array, row: Indices) -> Array:
+        side, corner = of_side[row], known[row]
+        found = luminance(ends[side, 0], ends[side, 1], share[:, np.newaxis], patch[side])[:, 0]
+        found = np.select([share == 0, share == 1], corner.T, found - levels[level[row]])
+        # The lowest luminance is that of all places without light, which are below their contour.
+        return np.where(found > 0, found, np.minimum(found, -TINY))
+
+    bracket = np.zeros(len(level)), np.ones(len(level))
+    tolerances = {"xatol": WIDTH, "xrtol": 0.0}
+    row = np.arange(len(level))
+    share = find_root(above, bracket, args=(row,), tolerances=tolerances).x
     # Where the luminance is not monotone the levels stay in order.
-    same, down = np.diff(of_side) == 0, ~rising[of_side[1:]]
-    # Each round passes a place on by one level only; it ends once no level is before its
-    # predecessor.
-    while True:
-        step = np.where(down, -1, 1) * np.diff(share)
-        turned = np.flatnonzero(same & (step < 0))
-        if not len(turned):
-            return share
-        share[turned + 1] = share[turned]
-
-
-def _divided(rows: Indices, bright: Array, above: Callable[[Indices, Array], Array]) -> Array:
-    """Return where a luminance falls to its lowest value, by division of brackets."""
-    start, size = bright, 1 - 2 * bright
-    share = np.arange(1, PARTS) / PARTS
-    for _ in range(round(math.log(WIDTH, 1 / PARTS))):
-        # All parts of all brackets at once: few calls on many places are faster than many on few.
-        lit = above(rows, start[:, np.newaxis] + share * size[:, np.newaxis]) > 0
-        size = size / PARTS
-        # The first part without light ends the lit part, even if there is light again beyond it.
-        start = start + size * np.logical_and.accumulate(lit, axis=1).sum(axis=1)
-    # A jump as near to a corner as it is searched is at the corner.
-    middle = np.where(start == bright, 0, np.where(start + size == 1 - bright, 1, 0.5))
-    return np.asarray(start + middle * size)
-
-
-def _rooted(
-    rows: Indices, bright: Array, top: Array, bottom: Array, jump: float,
-    above: Callable[[Indices, Array], Array],
-) -> Array:  # fmt: skip
-    """Return where a luminance crosses a level, by Chandrupatla's method."""
-    share = np.empty(len(rows))
-    which = np.arange(len(rows))
-    # The last place, the other end of the bracket, and the place before; with the luminance there.
-    x1, x2, f1, f2 = bright, 1 - bright, top, bottom
-    # The first place by the chord through both ends, as in the rule of false position.
-    t = f1 / (f1 - f2)
-    while len(which):
-        x = x1 + t * (x2 - x1)
-        f = above(rows[which], x[:, np.newaxis])[:, 0]
-        # The new place replaces the end of the bracket whose luminance is on the same side of the
-        # level.
-        same = (f > 0) == (f1 > 0)
-        x3, f3 = np.where(same, x1, x2), np.where(same, f1, f2)
-        x2, f2 = np.where(same, x2, x1), np.where(same, f2, f1)
-        x1, f1 = x, f
-        width = np.abs(x2 - x1)
-        jumps = np.abs(f2 - f1) > jump
-        done = (f1 == 0) | (width <= np.where(jumps, NARROW, WIDTH))
-        # A jump as near to a corner as it is searched is at the corner.
-        end = np.where(np.minimum(x1, x2) == 0, 0, np.where(np.maximum(x1, x2) == 1, 1, x1))
-        root = np.where(jumps & (width <= NARROW), end, np.where(np.abs(f1) <= np.abs(f2), x1, x2))
-        share[which[done]] = root[done]
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
-            # Chandrupatla's test, whether inverse quadratic interpolation stays between the ends;
-            # else the bracket is halved.
-            smooth = (phi * phi < xi) & ((1 - phi) ** 2 < 1 - xi)
-            t = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (
-                f3 - f2
-            )
-        # A step of at least half the width that is aimed at, so that the other end moves too.
-        least = WIDTH / 2 / np.maximum(width, WIDTH)
-        t = np.where(smooth, np.clip(np.nan_to_num(t, nan=0.5), least, 1 - least), 0.5)
-        kept = ~done
-        which, t = which[kept], t[kept]
-        x1, x2, f1, f2 = x1[kept], x2[kept], f1[kept], f2[kept]
-    return share
+    rising = (values[:, 0] < values[:, 1])[of_side]
+    return np.asarray(share[np.lexsort((np.where(rising, share, -share), of_side))])
 
 
 def _walk(
@@ -520,9 +426,7 @@ def _walk(
     return tuple(np.concatenate(part) for part in zip(*rows, strict=True))
 
 
-def _polygons(
-    triangle: Indices, band: Indices, corner: Indices
-) -> tuple[Indices, Indices, Indices]:
+def polygons(triangle: Indices, band: Indices, corner: Indices) -> tuple[Indices, Indices, Indices]:
     """Return size, corners and the first row of polygons with at least three corners."""
     new = np.ones(len(triangle), np.bool_)
     new[1:] = (triangle[1:] != triangle[:-1]) | (band[1:] != band[:-1])

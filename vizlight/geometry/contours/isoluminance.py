@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from typing import Literal, get_args
 
 import numpy as np
@@ -20,6 +21,7 @@ from vizlight.geometry.contours.banding import Bands
 from vizlight.geometry.contours.refinement import Luminance
 from vizlight.geometry.contours.spacing import Levels, LuminanceSteps
 from vizlight.geometry.solids import primitives, triangle_mesh
+from vizlight.geometry.solids.exact_surfaces import PROFILE
 from vizlight.model import kernels
 
 __all__ = ["Bands", "sphere", "truncus", "virtual_light"]
@@ -239,44 +241,52 @@ def _filled(places: Array, segments: int) -> tuple[Array, Indices]:
 def _bands(
     latitudes: Latitudes, steps: LuminanceSteps, places: Array, count: int, error: float
 ) -> Bands:
-    """Return the closed surface: caps at both poles and strips between circles."""
-    solid, toward = latitudes.solid, latitudes.light.toward
-    if solid.empty:
+    """Return the closed surface: strips between circles, of which the first and last are points."""
+    if latitudes.solid.empty:
         return banding.none(steps, error)
     angle, contour = _filled(2 * np.arcsin(np.sqrt(places)), min(count, 400))
-    q = np.sin(angle / 2) ** 2
+    q = np.append(np.sin(angle / 2) ** 2, 1.0)
     # The contours' own places, without the rounding of the way through angles.
-    q[contour >= 0] = places[contour[contour >= 0]]
-    # The first angle is the pole, which is one point and no circle.
-    q, contour = q[1:], contour[1:]
-    poles = solid.center + solid.radius * np.outer([1, -1], toward)
-    ring = np.arange(len(q) * count).reshape(len(q), count)
-    turned = np.roll(ring, -1, axis=1)
-    strips = np.stack([ring[:-1], ring[1:], turned[1:], turned[:-1]], axis=-1).reshape(-1, 4)
-    cap = np.stack([np.full(count, ring.size), ring[0], turned[0]], axis=-1)
-    # The far cap faces the other way, and its corners run the other way around.
-    floor = np.stack([np.full(count, ring.size + 1), turned[-1], ring[-1]], axis=-1)
-    corners = np.concatenate([cap.ravel(), strips.ravel(), floor.ravel()])
-    sizes = np.repeat([3, 4, 3], [len(cap), len(strips), len(floor)])
-    # Outward from the light, each contour decreases the band by one.
-    passed = np.concatenate([[0], np.cumsum(contour >= 0)])
-    # Without any light the whole sphere is in the lowest band.
-    number = len(places) if np.any(latitudes.luminance(0.0) > latitudes.light.low) else 0
-    band = np.repeat(number - passed, count)
-    on = contour >= 0
-    lines = np.stack([ring[on], turned[on]], axis=-1).reshape(-1, 2)
-    return Bands(
-        points=np.concatenate([latitudes.circles(q, count), poles]),
-        offsets=np.concatenate([[0], np.cumsum(sizes)]).astype(np.intp),
-        corners=corners.astype(np.intp),
-        band=band.astype(np.intp),
-        values=steps.values[band],
-        patch=np.zeros(len(sizes), np.intp),
-        lines=lines.astype(np.intp),
-        line_levels=np.repeat(steps.edges[contour[on]], count),
-        steps=steps,
-        error=error,
+    on = np.flatnonzero(contour >= 0)
+    q[on] = places[contour[on]]
+    number = np.arange(len(q) * count).reshape(len(q), count)
+    number[[0, -1]] = number[[0, -1], :1]
+    # Outward from the light each contour decreases the band by one; without any light the whole
+    # sphere is in the lowest one.
+    brightest = len(places) if np.any(latitudes.luminance(0.0) > latitudes.light.low) else 0
+    band = (brightest - np.cumsum(contour >= 0))[:, np.newaxis]
+    lines = np.stack([number[on], np.roll(number[on], -1, axis=1)], axis=-1).reshape(-1, 2)
+    contours = lines, np.repeat(contour[on], count)
+    return _around(latitudes.circles(q, count), number, band, contours, steps, error)
+
+
+def _around(
+    points: Array, number: Indices, band: Indices, contours: tuple[Indices, Indices],
+    steps: LuminanceSteps, error: float, ends: Sequence[tuple[int, Indices, float]] = (),
+) -> Bands:  # fmt: skip
+    """Return the closed surface of a grid around an axis, and of polygons at its ends.
+
+    The grid has the index of each point, in a row for each circle, and the band of each of its
+    quadrilaterals; the contours have the indices of their ends, and those of their levels; the ends
+    have their patches, corners and values.
+    """
+    after = np.roll(number, -1, axis=1)
+    quads = np.stack([number[:-1], number[1:], after[1:], after[:-1]], axis=-1).reshape(-1, 4)
+    cell = np.repeat(np.arange(len(quads)), 4)
+    # Those with a corner twice are triangles, or none.
+    sizes, corners, first = banding.polygons(cell, cell, quads.ravel())
+    strips = np.broadcast_to(band, number[1:].shape).ravel()[cell[first]]
+    patches, rings, values = zip(*ends, strict=True) if ends else ((), (), ())
+    cells = (
+        np.append(sizes, [len(ring) for ring in rings]).astype(np.intp),
+        np.concatenate([corners, *rings]),
+        np.append(strips, steps.band(np.array(values))),
+        np.append(np.zeros_like(strips), patches).astype(np.intp),
     )
+    lines = contours[0], steps.edges[contours[1]]
+    bands = banding.assembled([points], cells, lines, steps, error)
+    # The ends have their own luminance.
+    return dataclasses.replace(bands, values=np.append(bands.values[: len(strips)], values))
 
 
 def truncus(
@@ -395,12 +405,8 @@ class Rulings:
     def __init__(self, light: axial.ShapeLight, solid: primitives.Frustum) -> None:
         self.light, self.solid = light, solid
         self.first, self.second = axial.frame(solid.axis, light.toward)
-        slope = solid.radii[1] - solid.radii[0]
-        size = math.hypot(solid.height, slope) or 1.0
-        # A side without area (equal radii, height 0) has normals perpendicular to the axis.
-        # The side's normal: across the axis by the height, along it by the difference of the
-        # radii.
-        across, along = (solid.height / size, slope / size) if slope or solid.height else (1.0, 0.0)
+        # The side's normal: across the axis by the height, along it by the difference of the radii.
+        across, along = (float(x) for x in solid.surfaces().rows[0, PROFILE][:2])
         # A and B of N . L = A cos(phi) + B. Rounding could make A negative where the light is on
         # the axis.
         self.a = across * max(float(self.first @ light.toward), 0.0)
@@ -428,50 +434,24 @@ class Rulings:
 
 def _ruled_bands(side: Rulings, steps: LuminanceSteps, places: Array, segments: int) -> Bands:
     """Return the closed surface: strips between rulings, and one polygon per end."""
-    (first, second), height = side.solid.radii, side.solid.height
-    if max(first, second) == 0:
-        return banding.none(steps, steps.error)
+    radii = np.array(side.solid.radii)
     # Each contour is a pair of rulings, at plus and minus its angle from the light. The angles run
     # from the light to the far side and, mirrored, back.
     angle, contour = _filled(places, segments)
     angle = np.concatenate([angle, [np.pi], 2 * np.pi - angle[:0:-1]])
     contour = np.concatenate([contour, [-1], contour[:0:-1]])
-    count = len(angle)
+    number = np.arange(2 * len(angle)).reshape(2, -1)
     # An apex is one point that all strips share.
-    top = np.arange(count) if first > 0 else np.zeros(count, int)
-    shared = top.max() + 1
-    bottom = shared + (np.arange(count) if second > 0 else np.zeros(count, int))
-    upper = side.place(angle[:shared], first=True)
-    points = np.concatenate([upper, side.place(angle[: bottom.max() + 1 - shared], first=False)])
-    if height == 0 and first == second:
+    number[radii == 0] = number[radii == 0, :1]
+    if side.solid.height == 0 and radii[0] == radii[1]:
         # Two discs back to back share one rim.
-        points, bottom = upper, top
-    cells: list[Indices] = []
-    parts: list[tuple[int, int, float]] = []
-    on = np.empty(0, int)
-    if height > 0 or first != second:
-        quads = np.stack([top, bottom, np.roll(bottom, -1), np.roll(top, -1)], axis=1)
-        # At an apex quadrilaterals become triangles.
-        cells += list(quads[:, [0, 1, 2] if first == 0 else [0, 1, 3] if second == 0 else slice(4)])
-        # No contour lies within a strip, so the band at its middle is the strip's.
-        band = steps.band(side.luminance((angle + np.append(angle[1:], 2 * np.pi)) / 2))
-        parts += [(0, int(k), float(steps.values[k])) for k in band]
-        on = np.flatnonzero(contour >= 0)
+        number[1] = number[0]
+    # No contour lies within a strip, so the band at its middle is the strip's.
+    band = steps.band(side.luminance((angle + np.append(angle[1:], 2 * np.pi)) / 2))
+    on = np.flatnonzero(contour >= 0)
+    points = np.concatenate([side.place(angle, first=first) for first in (True, False)])
     # The second end is seen from below, and its rim runs the other way.
-    for patch, radius, ring in ((1, first, top), (2, second, bottom[::-1])):
-        if radius > 0:
-            value = side.end(first=patch == 1)
-            cells.append(ring)
-            parts.append((patch, int(steps.band(np.array(value))), value))
-    return Bands(
-        points=points,
-        offsets=np.concatenate([[0], np.cumsum([len(cell) for cell in cells])]).astype(np.intp),
-        corners=np.concatenate(cells).astype(np.intp),
-        band=np.array([k for _, k, _ in parts], dtype=np.intp),
-        values=np.array([value for _, _, value in parts], dtype=np.float64),
-        patch=np.array([patch for patch, _, _ in parts], dtype=np.intp),
-        lines=np.stack([top[on], bottom[on]], axis=1).astype(np.intp),
-        line_levels=steps.edges[contour[on]],
-        steps=steps,
-        error=steps.error,
-    )
+    rings = (1, number[0]), (2, number[1, ::-1])
+    ends = [(i, ring, side.end(first=i == 1)) for i, ring in rings if radii[i - 1] > 0]
+    contours = number[:, on].T, contour[on]
+    return _around(points, number, band, contours, steps, steps.error, ends)

@@ -7,24 +7,22 @@ border between two levels is then written once, and one painter's order leaves n
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from vizlight._types import Array, Bools, Indices
+from vizlight.geometry.contours.banding import ranges
 from vizlight.geometry.contours.faces import Face
 from vizlight.geometry.contours.palette import JUMP, Palette
 from vizlight.geometry.contours.rings import (
-    END,
     STAIR,
-    WAYS,
-    area_of,
-    shifted,
-    simplified,
-    smoothed,
-    walked,
+    Rings,
+    beneath,
+    corners_of,
+    squares,
+    traced,
+    vertices,
 )
 from vizlight.geometry.contours.steady import slopes
 
@@ -36,35 +34,14 @@ BENEATH, FREE = 6, 0.6
 #: Reach of a border beneath lighter areas, in pixels: tried from the largest; the share of it by
 #: which the border may lie elsewhere.
 REACHES, SLACK = (5.0, 2.5, 1.2, 0.6), 0.6
-#: Parts of the reach at which it is looked for what covers it, and vertices that move alike.
-PARTS, AROUND = (0.4, 0.7, 1.0, 1.3, 1.6), 9
+#: Parts of the reach at which it is looked for what covers it.
+PARTS = (0.4, 0.7, 1.0, 1.3, 1.6)
 #: Pixels between two borders below which not all are drawn.
 CROWD = 0.8
 #: Least and largest distance that a tolerance of values allows, in pixels.
 NEAR, BROAD = 0.2, 1.5
 #: Share of the error by which steep borders may be off.
 MIXED = 0.9
-#: Area in square pixels below which a ring is left out.
-SPECK = 0.2
-
-
-class Rings(NamedTuple):
-    """Rings between samples, one after the other.
-
-    Attributes
-    ----------
-    level : ndarray of int, shape (n,)
-        Level that the inside reaches.
-    inner, outer : ndarray of int, shape (n,)
-        Samples inside and outside, between which a vertex lies.
-    starts : ndarray of int, shape (r + 1,)
-        First vertex of each ring, and the end.
-    """
-
-    level: Indices
-    inner: Indices
-    outer: Indices
-    starts: Indices
 
 
 def levels(palette: Palette, samples: Array, scale: int, tolerance: float = 0.0) -> Iterator[Face]:
@@ -91,33 +68,35 @@ def levels(palette: Palette, samples: Array, scale: int, tolerance: float = 0.0)
     box = np.array([(0, 0), (columns, 0), (columns, rows), (0, rows)]) / scale
     yield Face(palette.colors[1], [box])
     shown = _padded(palette.labels, pad)
-    values = np.pad(samples[..., 0], pad, mode="edge")
+    values = np.pad(samples, ((pad, pad), (pad, pad), (0, 0)), mode="edge")
     labels, depth = _beneath(shown, BENEATH * scale)
     steep = np.pad(slopes(samples, scale), pad, mode="edge").ravel()
     rings = _rings(labels, 1)
-    centres = palette.centres[:, 0]
-    middle = np.append(0.0, (centres[1:] + centres[:-1]) / 2)
-    points, sharp = _vertices(rings, values, middle, palette)
+    mine, its = palette.centres[rings.area], palette.centres[rings.area - 1]
+    jump = JUMP * max(palette.error, 0.5)
+    points, sharp = vertices(rings, values, mine, its, jump)
     at = labels.ravel()[rings.inner].astype(np.intp)
     under = depth.ravel()[rings.inner]
     slope = np.maximum(steep[rings.inner], steep[rings.outer])
-    cover = _covers(rings.level, at, slope, palette.error, sharp=sharp)
+    cover = _covers(rings.area, at, slope, palette.error, sharp=sharp)
     cover[under > 0] = 0
-    points, reach = _drawn_in(rings, points, labels, cover, scale)
+    points, reach = beneath(points, rings.starts, labels, cover, REACHES, PARTS, scale)
     limit = _limits(slope, palette.error, tolerance)
     limit = np.where(sharp, STAIR / scale, limit)
     limit = np.where(under > 0, FREE * under / scale, limit)
     limit = np.maximum(limit, SLACK * reach)
-    every = list(_cut(rings, points, limit, pad, scale))
-    which = rings.level[rings.starts[:-1]]
+    every = corners_of((points - pad + 0.5) / scale, rings.starts, limit)
+    which = rings.area[rings.starts[:-1]]
     for level in range(2, len(palette.colors)):
         kept = [every[i] for i in np.flatnonzero(which == level) if len(every[i])]
         if kept:
             yield Face(palette.colors[level], kept)
     ground = _rings((shown == 0).astype(np.int32), 0)
-    points, sharp = _vertices(ground, values, np.array([0.0, np.nan]), palette)
+    blank = np.zeros((len(ground.area), 1))
+    # All of it is between surfaces.
+    points, _ = vertices(ground, values, blank, blank, -1.0)
     limit = np.full(len(points), STAIR / scale)
-    kept = [ring for ring in _cut(ground, points, limit, pad, scale) if len(ring)]
+    kept = [r for r in corners_of((points - pad + 0.5) / scale, ground.starts, limit) if len(r)]
     yield Face(palette.colors[0], [box, *kept])
 
 
@@ -128,7 +107,7 @@ def _padded(labels: NDArray[np.int32], pad: int) -> NDArray[np.int32]:
 
 
 def _beneath(shown: NDArray[np.int32], reach: int) -> tuple[NDArray[np.int32], NDArray[np.int16]]:
-    """Return labels that go on beneath the background, and the distances there in samples."""
+    """Return labels that go on beneath the background, and distances from it in samples."""
     labels = shown.copy()
     flat, width = labels.ravel(), labels.shape[1]
     depth = np.zeros(labels.shape, dtype=np.int16)
@@ -157,47 +136,9 @@ def _beneath(shown: NDArray[np.int32], reach: int) -> tuple[NDArray[np.int32], N
 
 def _rings(labels: NDArray[np.int32], lowest: int) -> Rings:
     """Return the rings around all that is above each level from the lowest on."""
-    width = labels.shape[1]
-    corner = labels[:-1, :-1], labels[:-1, 1:], labels[1:, 1:], labels[1:, :-1]
-    low = np.minimum(np.minimum(corner[0], corner[1]), np.minimum(corner[2], corner[3]))
-    high = np.maximum(np.maximum(corner[0], corner[1]), np.maximum(corner[2], corner[3]))
-    low = np.maximum(low, lowest)
-    row, column = np.nonzero(low < high)
-    low, count = low[row, column], (high - low)[row, column]
-    square = np.repeat(np.arange(len(row)), count)
-    level = low[square] + 1 + np.arange(len(square)) - np.repeat(np.cumsum(count) - count, count)
-    at = (row * width + column)[square]
-    corners = np.array([0, 1, width + 1, width])
-    bits = np.zeros(len(square), dtype=np.int8)
-    for i, part in enumerate(corner):
-        bits |= (part[row, column][square] >= level).astype(np.int8) << i
-    heads: list[Indices] = []
-    tails: list[Indices] = []
-    inner: list[Indices] = []
-    outer: list[Indices] = []
-    rank: list[Indices] = []
-    for code, ways in WAYS.items():
-        here = np.flatnonzero(bits == code)
-        for enter, leave in ways:
-            ends = []
-            for edge in (enter, leave):
-                a, b = edge, (edge + 1) % 4
-                if not code >> a & 1:
-                    a, b = b, a
-                ends.append((at[here] + corners[a], at[here] + corners[b]))
-            keys = [np.minimum(*pair) + labels.size * (np.abs(pair[0] - pair[1]) > 1)
-                    for pair in ends]  # fmt: skip
-            heads.append(keys[0] + level[here] * (2 * labels.size))
-            tails.append(keys[1] + level[here] * (2 * labels.size))
-            inner.append(ends[0][0])
-            outer.append(ends[0][1])
-            rank.append(level[here])
-    head, tail = np.concatenate(heads), np.concatenate(tails)
-    order = np.argsort(head, kind="stable")
-    follows = order[np.searchsorted(head[order], tail)]
-    walk, starts = walked(follows)
-    rank_of, inner_of, outer_of = (np.concatenate(part)[walk] for part in (rank, inner, outer))
-    return Rings(rank_of, inner_of, outer_of, starts)
+    at, corner = squares(labels)
+    square, level = ranges(np.maximum(corner.min(axis=1), lowest) + 1, corner.max(axis=1) + 1)
+    return traced(at[square], level, corner[square] >= level[:, np.newaxis], labels)
 
 
 def _covers(level: Indices, at: Indices, slope: Array, half: float, *, sharp: Bools) -> Indices:
@@ -222,57 +163,3 @@ def _limits(slope: Array, half: float, tolerance: float) -> Array:
     mixed = np.minimum(tolerance / band + slope / (2 * band), MIXED * (half + tolerance) / slope)
     limits: Array = np.clip(np.maximum(tolerance / slope, mixed), NEAR, BROAD)
     return limits
-
-
-def _vertices(rings: Rings, values: Array, middle: Array, palette: Palette) -> tuple[Array, Bools]:
-    """Return the vertices of rings in samples, and which are between two surfaces."""
-    width = values.shape[1]
-    inside, outside = (values.ravel()[at].astype(np.float64) for at in (rings.inner, rings.outer))
-    step = inside - outside
-    sharp = np.abs(step) > JUMP * max(palette.error, 2.0)
-    level = middle[rings.level]
-    linear = (step > 0) & ~sharp & np.isfinite(level)
-    share = np.where(linear, (inside - level) / np.where(linear, step, 1), 0.5)
-    ends = [np.stack([at % width, at // width], axis=1) for at in (rings.inner, rings.outer)]
-    points = ends[0] + np.clip(share, END, 1 - END)[:, np.newaxis] * (ends[1] - ends[0])
-    sharp |= ~np.isfinite(level)
-    return smoothed(points, sharp, rings.starts), sharp
-
-
-def _drawn_in(
-    rings: Rings, points: Array, labels: NDArray[np.int32], cover: Indices, scale: int
-) -> tuple[Array, Array]:
-    """Return vertices, those that a lighter area covers moved beneath it, and the distances.
-
-    Vertices are in samples, distances in pixels.
-    """
-    starts = rings.starts
-    span = np.maximum(np.minimum(np.diff(starts), 4 * scale) // 3, 1)
-    way = points[shifted(starts, span)] - points[shifted(starts, -span)]
-    length = np.hypot(way[:, 0], way[:, 1])
-    # The inside is at the right hand of the way on paper, whose rows run downward.
-    inward = np.stack([-way[:, 1], way[:, 0]], axis=1) / np.maximum(length, 1e-9)[:, np.newaxis]
-    moved = np.zeros(len(points))
-    left = np.flatnonzero(cover)
-    top = np.array(labels.shape)[::-1] - 1
-    for reach in REACHES:
-        covered = np.ones(len(left), dtype=np.bool_)
-        for part in PARTS:
-            trial = points[left] + part * reach * scale * inward[left]
-            at = np.clip(np.rint(trial), 0, top).astype(np.intp)
-            covered &= labels[at[:, 1], at[:, 0]] >= cover[left]
-        moved[left[covered]] = reach
-        left = left[~covered]
-    # The mean of the least around: a border without teeth takes few vertices.
-    moved = scipy.ndimage.minimum_filter1d(moved, AROUND)
-    moved = scipy.ndimage.uniform_filter1d(moved, AROUND)
-    return points + scale * moved[:, np.newaxis] * inward, moved
-
-
-def _cut(rings: Rings, points: Array, limit: Array, pad: int, scale: int) -> Iterator[Array]:
-    """Yield the corners of rings in pixels; none of those that are specks."""
-    pixels = (points - pad + 0.5) / scale
-    kept = simplified(pixels, rings.starts, limit)
-    ends = np.cumsum(np.add.reduceat(kept, rings.starts[:-1]))
-    for corners in np.split(pixels[kept], ends[:-1]):
-        yield corners if len(corners) > 2 and abs(area_of(corners)) > SPECK else corners[:0]

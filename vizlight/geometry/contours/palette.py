@@ -95,9 +95,11 @@ def palette_of(
     rank = np.zeros(len(centres), dtype=np.int32)
     rank[order] = np.arange(1, len(order) + 1)
     labels[where] = rank[number]
-    low, high = _extremes(foreground, labels[where], len(order) + 1)
-    colors = np.concatenate([background[np.newaxis], (low + high)[1:] / 2])
-    largest_error = float(np.max((high - low)[1:]) / 2)
+    numbers = np.arange(1, len(order) + 1)
+    limits = [scipy.ndimage.extrema(x, labels[where], numbers)[:2] for x in foreground.T]
+    low, high = np.moveaxis(np.array(limits, np.float64), 0, -1)
+    colors = np.concatenate([background[np.newaxis], (low + high) / 2])
+    largest_error = float(np.max(high - low) / 2)
     kept = np.concatenate([background[np.newaxis], centres[order]])
     _trim(labels.reshape(rows, columns), samples, kept, scale)
     _settle(labels.reshape(rows, columns), samples, kept, error)
@@ -173,7 +175,7 @@ def _join(labels: NDArray[np.int32], samples: Array, centres: Array, at: tuple[I
 def _trim(labels: NDArray[np.int32], samples: Array, centres: Array, scale: int) -> None:
     """Let colors at the rim of surfaces be those a pixel within.
 
-    Light falls off there within a pixel, which is a mixture with what is beside it.
+    Light falls off within a pixel, which is a mixture with what is beside it.
     """
     shown = labels > 0
     firm = scipy.ndimage.binary_erosion(shown, iterations=max(scale - 1, 1), border_value=1)
@@ -237,15 +239,3 @@ def _cover(points: Array, reach: float) -> Indices:
         left[balls[best]] = left[first] = False
         chosen.append(near[best])
     return np.array(chosen)
-
-
-def _extremes(samples: Array, number: Indices, count: int) -> tuple[Array, Array]:
-    """Return the least and the largest channels of the samples of each number from 1."""
-    order = np.argsort(number, kind="stable")
-    starts = np.searchsorted(number[order], np.arange(1, count))
-    blank = np.zeros((1, samples.shape[1]))
-    low, high = (
-        np.concatenate([blank, part.reduceat(samples[order], starts, axis=0)])
-        for part in (np.minimum, np.maximum)
-    )
-    return low, high

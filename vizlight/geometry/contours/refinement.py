@@ -427,4 +427,10 @@ def _close_apexes(bands: Bands, mesh: Mesh) -> Bands:
         near = np.flatnonzero(np.einsum("ij,ij->i", gap, gap) < (4 * APEX) ** 2)
         clusters[near] = near[:1]
         points[near[:1]] = apex
-    return banding.weld(bands, clusters)
+    size = np.diff(bands.offsets)
+    owner = np.repeat(np.arange(len(size)), size)
+    # Polygons that lose their area are left out.
+    size, corners, first = banding.polygons(owner, owner, clusters[bands.corners])
+    cells = size, corners, bands.band[owner[first]], bands.patch[owner[first]]
+    lines = clusters[bands.lines], bands.line_levels
+    return banding.assembled([points], cells, lines, bands.steps, bands.error)

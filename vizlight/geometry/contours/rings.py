@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
+import scipy
+from numpy.typing import NDArray
 
 from vizlight._types import Array, Bools, Indices
 
-__all__ = ["END", "SEEN", "STAIR", "WAYS", "area_of", "shifted", "simplified", "smoothed", "walked"]
+__all__ = [
+    "SEEN", "STAIR", "Rings", "area_of", "beneath", "corners_of", "shifted", "simplified",
+    "squares", "traced", "vertices", "walked",
+]  # fmt: skip
 
 #: Largest distance in pixels of a border from what is written of it where it is seen; and in
 #: samples, between two surfaces, where a straight border is a stair of samples.
@@ -25,6 +33,172 @@ WAYS: dict[int, tuple[tuple[int, int], ...]] = {
     8: ((3, 2),), 9: ((0, 2),), 11: ((1, 2),), 12: ((3, 1),), 13: ((0, 1),), 14: ((3, 0),),
     5: ((0, 1), (2, 3)), 10: ((1, 2), (3, 0)),
 }  # fmt: skip
+#: Those edges by way (two corners may have two), enter or leave, and corners; -1 for none.
+TURNS = np.full((2, 2, 16), -1)
+for _code, _ways in WAYS.items():
+    TURNS[: len(_ways), :, _code] = _ways
+#: Area in square pixels below which a ring is left out.
+SPECK = 0.2
+#: Vertices that move alike.
+AROUND = 9
+
+
+class Rings(NamedTuple):
+    """Rings between samples, one after the other.
+
+    Attributes
+    ----------
+    area : ndarray of int, shape (n,)
+        Number of the area inside.
+    inner, outer : ndarray of int, shape (n,)
+        Samples inside and outside, between which a vertex lies.
+    starts : ndarray of int, shape (r + 1,)
+        First vertex of each ring, and the end.
+    """
+
+    area: Indices
+    inner: Indices
+    outer: Indices
+    starts: Indices
+
+
+def squares(labels: NDArray[np.int32]) -> tuple[Indices, NDArray[np.int32]]:
+    """Return the upper left samples of squares of several labels, and the four labels of each.
+
+    Parameters
+    ----------
+    labels : ndarray of int32, shape (rows, columns)
+    """
+    corner = labels[:-1, :-1], labels[:-1, 1:], labels[1:, 1:], labels[1:, :-1]
+    mixed = (corner[0] != corner[1]) | (corner[1] != corner[2]) | (corner[2] != corner[3])
+    row, column = np.nonzero(mixed)
+    return row * labels.shape[1] + column, np.stack([part[row, column] for part in corner], axis=1)
+
+
+def traced(at: Indices, area: Indices, inside: Bools, labels: NDArray[np.int32]) -> Rings:
+    """Return the rings around areas.
+
+    Parameters
+    ----------
+    at : ndarray of int, shape (n,)
+        Upper left samples of squares, each as often as borders of areas pass it.
+    area : ndarray of int, shape (n,)
+        Number of the area.
+    inside : ndarray of bool, shape (n, 4)
+        Mask of the corners that are of the area.
+    labels : ndarray of int32, shape (rows, columns)
+        Samples.
+    """
+    size, width = labels.size, labels.shape[1]
+    code = inside @ np.array([1, 2, 4, 8])
+    way, row = np.nonzero(TURNS[:, 0, code] >= 0)
+    corners = at[:, np.newaxis] + np.array([0, 1, width + 1, width, 0])
+    enter, leave = TURNS[way, :, code[row]].T
+    # A border is known by its area and by the pair of samples that it passes between.
+    head, tail = (
+        np.minimum(a, b) + size * (np.abs(a - b) > 1) + 2 * size * area[row].astype(np.int64)
+        for a, b in ((corners[row, edge], corners[row, edge + 1]) for edge in (enter, leave))
+    )
+    order = np.argsort(head)
+    walk, starts = walked(np.searchsorted(head[order], tail[order]))
+    row, enter = row[order[walk]], enter[order[walk]]
+    first, second = corners[row, enter], corners[row, enter + 1]
+    is_inner = inside[row, enter]
+    inner, outer = np.where(is_inner, (first, second), (second, first))
+    return Rings(area[row], inner, outer, starts)
+
+
+def vertices(
+    rings: Rings, samples: Array, mine: Array, its: Array, jump: float
+) -> tuple[Array, Bools]:
+    """Return the vertices of rings in samples, and which of them are between two surfaces.
+
+    The difference of the squared distances from the colours of both sides is linear in a colour.
+
+    Parameters
+    ----------
+    rings : Rings
+    samples : ndarray, shape (rows, columns, c)
+    mine, its : ndarray, shape (n, c)
+        Colours of the areas inside and outside.
+    jump : float
+        Difference of a channel above which two samples are of two surfaces.
+    """
+    width = samples.shape[1]
+    flat = samples.reshape(-1, samples.shape[2])
+    inside, outside = (flat[at].astype(np.float64) for at in (rings.inner, rings.outer))
+    sharp = np.abs(inside - outside).max(axis=1) > jump
+    balance, span = (
+        np.einsum("ij,ij->i", its - mine, ends)
+        for ends in (its + mine - 2 * inside, 2 * (outside - inside))
+    )
+    smooth = (span > 0) & ~sharp
+    share = np.where(smooth, balance / np.where(smooth, span, 1), 0.5)
+    begin, end = (np.stack([at % width, at // width], 1) for at in (rings.inner, rings.outer))
+    points = begin + np.clip(share, END, 1 - END)[:, np.newaxis] * (end - begin)
+    return smoothed(points, sharp, rings.starts), sharp
+
+
+def beneath(
+    points: Array, starts: Indices, labels: NDArray[np.int32], cover: Indices,
+    reaches: Sequence[float], parts: Sequence[float], scale: int,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Return vertices in samples, moved beneath what covers them, and the distances in pixels.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 2)
+    starts : ndarray of int, shape (r + 1,)
+        First vertex of each ring, and the end.
+    labels : ndarray of int32, shape (rows, columns)
+    cover : ndarray of int, shape (n,)
+        Least label that covers each vertex; 0 where it is seen.
+    reaches : sequence of float
+        Distances in pixels to the inside, or below 0 to the outside, tried from the first.
+    parts : sequence of float
+        Parts of a distance at which it is looked for what covers it.
+    scale : int
+        Samples for each pixel, along a side.
+    """
+    span = np.maximum(np.minimum(np.diff(starts), 4 * scale) // 3, 1)
+    way = points[shifted(starts, span)] - points[shifted(starts, -span)]
+    length = np.hypot(way[:, 0], way[:, 1])
+    # The inside is at the right hand of the way on paper, whose rows run downward.
+    inward = np.stack([-way[:, 1], way[:, 0]], axis=1) / np.maximum(length, 1e-9)[:, np.newaxis]
+    moved = np.zeros(len(points))
+    left = np.flatnonzero(cover)
+    top = np.array(labels.shape)[::-1] - 1
+    for reach in reaches:
+        covered = np.ones(len(left), dtype=np.bool_)
+        for part in parts:
+            trial = points[left] + part * reach * scale * inward[left]
+            at = np.clip(np.rint(trial), 0, top).astype(np.intp)
+            covered &= labels[at[:, 1], at[:, 0]] >= cover[left]
+        moved[left[covered]] = abs(reach)
+        left = left[~covered]
+    # The mean of the least around: a border without teeth takes few vertices.
+    least = scipy.ndimage.minimum_filter1d(moved, AROUND)
+    moved = np.asarray(scipy.ndimage.uniform_filter1d(least, AROUND))
+    way = np.sign(reaches[0]) * inward
+    return points + scale * moved[:, np.newaxis] * way, moved
+
+
+def corners_of(points: Array, starts: Indices, limit: Array) -> list[Array]:
+    """Return the corners of rings that are kept within limits; none of those that are specks.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 2)
+        Vertices in pixels, ring after ring.
+    starts : ndarray of int, shape (r + 1,)
+        First vertex of each ring, and the end.
+    limit : ndarray, shape (n,)
+        Largest distance of each vertex.
+    """
+    kept = simplified(points, starts, limit)
+    ends = np.cumsum(np.add.reduceat(kept, starts[:-1]))
+    rings = np.split(points[kept], ends[:-1])
+    return [ring if len(ring) > 2 and abs(area_of(ring)) > SPECK else ring[:0] for ring in rings]
 
 
 def area_of(ring: Array) -> float:

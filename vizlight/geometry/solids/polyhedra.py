@@ -11,8 +11,8 @@ from vizlight import _check
 from vizlight._types import Array, Bools, Dataset, Foreign, Indices, VectorLike
 from vizlight.geometry import axial
 from vizlight.geometry.solids import parallel_rays
-from vizlight.geometry.solids.exact_surfaces import Plane, Surface
-from vizlight.geometry.solids.primitives import Block, Primitive, place
+from vizlight.geometry.solids.exact_surfaces import Surfaces
+from vizlight.geometry.solids.primitives import Block, Facets, Primitive, place
 
 __all__ = ["HalfSpace", "Polyhedron", "Prism"]
 
@@ -45,15 +45,6 @@ class HalfSpace(Primitive):
         self.point = axial.triple("point", point)
         self.normal = _check.unit("normal", normal)
 
-    def __repr__(self) -> str:
-        point, normal = (tuple(map(float, v)) for v in (self.point, self.normal))
-        return f"HalfSpace({point}, {normal})"
-
-    @property
-    def empty(self) -> bool:
-        """Whether the solid has no volume."""
-        return False
-
     @property
     def volume(self) -> float:
         """The volume, which is infinite."""
@@ -68,11 +59,10 @@ class HalfSpace(Primitive):
         axes = np.stack([self.normal, *axial.frame(self.normal)])
         return Block((away - size / 2) * self.normal, (size, size, size), axes=axes)
 
-    def surfaces(self) -> tuple[Surface, ...]:
+    def surfaces(self) -> Surfaces:
         """Return the plane, and the other faces of the block in place of the half-space."""
-        # The first face of a block is outward along its first axis, which is the normal here: the
-        # plane.
-        return (Plane(self.point, self.normal), *self.block().surfaces()[1:])
+        # The first face of a block is outward along its first axis, which is the normal here.
+        return self.block().surfaces()
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> HalfSpace:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
@@ -146,11 +136,6 @@ class Polyhedron(Primitive):
         return f"Polyhedron({len(self.points)} points, {len(self.triangles)} triangles)"
 
     @property
-    def empty(self) -> bool:
-        """Whether the solid has no volume."""
-        return not len(self.triangles)
-
-    @property
     def volume(self) -> float:
         """The volume."""
         # Tetrahedra from the middle: from an origin far away, huge volumes would cancel.
@@ -158,7 +143,7 @@ class Polyhedron(Primitive):
         return float(np.linalg.det(corners).sum()) / 6
 
     @functools.cached_property
-    def _planes(self) -> tuple[tuple[Surface, ...], Indices]:
+    def _planes(self) -> tuple[Surfaces, Indices]:
         """Return the different planes of the triangles, and the one of each triangle."""
         middle, size = self.box()
         corners = self.points[self.triangles]
@@ -170,17 +155,20 @@ class Polyhedron(Primitive):
         keys = np.round(np.column_stack([normal, offset]) / SAME_PLANE)
         _, first, which = np.unique(keys, axis=0, return_index=True, return_inverse=True)
         # Any triangle of a plane gives the point on it.
-        planes = tuple(Plane(corners[i, 0], normal[i]) for i in first)
+        planes = Surfaces.planes(corners[first, 0], normal[first])
         return planes, which.ravel().astype(np.intp)
 
-    @property
-    def patch(self) -> Indices:
-        """Index of the plane of each triangle."""
-        return self._planes[1]
-
-    def surfaces(self) -> tuple[Surface, ...]:
+    def surfaces(self) -> Surfaces:
         """Return the planes of the triangles."""
         return self._planes[0]
+
+    def facets(self, segments: int) -> Facets:  # noqa: ARG002
+        """Return the triangles."""
+        return self.points, self.triangles, self._planes[1]
+
+    def count(self, segments: int) -> float:  # noqa: ARG002
+        """Return the number of points."""
+        return len(self.points)
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Polyhedron:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""

@@ -1,19 +1,22 @@
-"""Solids with surfaces in closed form: sphere, frustum, block and torus, and their combinations."""
+"""Solids with surfaces in closed form: sphere, frustum, block and torus, and their combinations.
+
+Each has its exact surfaces and coarse closed facets, of which each is on one of the surfaces.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from vizlight import _check
-from vizlight._types import Array, Bools, VectorLike
+from vizlight._types import Array, Bools, Indices, VectorLike
 from vizlight.geometry import axial
-from vizlight.geometry.solids.exact_surfaces import Ball, Cone, Plane, Ring, Surface
+from vizlight.geometry.solids.exact_surfaces import Surfaces
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -23,6 +26,11 @@ __all__ = ["Block", "Boolean", "Frustum", "Primitive", "Solid", "Sphere", "Torus
 
 #: Description of a solid in error messages.
 EXPECTED = "a vizlight.Sphere, Frustum, Block or another solid, or a combination of them"
+
+
+#: Points of facets, indices of their corners, counter-clockwise seen from outside, and the index of
+#: the surface of each.
+Facets: TypeAlias = tuple[Array, Indices, Indices]
 
 
 class Solid:
@@ -135,12 +143,31 @@ class Solid:
 class Primitive(Solid):
     """A solid that is not a combination of others."""
 
-    #: Largest radius of its curved surfaces; 0 if all are planes.
-    roundness: float = 0.0
+    @property
+    def roundness(self) -> float:
+        """Largest radius of its curved surfaces; 0 if all are planes."""
+        return 0.0
 
-    def surfaces(self) -> tuple[Surface, ...]:
+    def __repr__(self) -> str:
+        parts = (f"{name}={np.asarray(value).tolist()}" for name, value in vars(self).items())
+        return f"{type(self).__name__}({', '.join(parts)})"
+
+    def surfaces(self) -> Surfaces:
         """Return the surfaces that bound the solid."""
         raise NotImplementedError
+
+    def facets(self, segments: int) -> Facets:
+        """Return coarse closed facets, with so many segments to a circle."""
+        raise NotImplementedError
+
+    def count(self, segments: int) -> float:
+        """Return the largest number of points of the facets, approximately."""
+        return 2 * segments
+
+    def missed(self, segments: int, volume: float) -> float:  # noqa: ARG002
+        """Return a bound of the volume between the surfaces and facets of a given volume."""
+        # The number added covers the rounding of sums, in a solid of about unit size.
+        return abs(self.volume - volume) + 1e-14
 
     def box(self) -> tuple[Array, float]:
         """Return the centre of the solid and the radius of a ball around it that contains it."""
@@ -149,7 +176,9 @@ class Primitive(Solid):
     @property
     def empty(self) -> bool:
         """Whether the solid has no volume."""
-        raise NotImplementedError
+        middle, size = self.box()
+        # Of about unit size no volume is below the smallest number.
+        return size == 0 or self.moved(middle, size).volume == 0
 
     @property
     def volume(self) -> float:
@@ -165,7 +194,9 @@ class Primitive(Solid):
         if self.empty:
             return np.zeros(len(points), np.bool_)
         # Surfaces go on beyond their faces: the planes of its ends bound the cone of a frustum.
-        return np.asarray(np.all([s.distance(points) < 0 for s in self.surfaces()], axis=0))
+        surfaces = self.surfaces()
+        sides = [surfaces.distance(points, i) < 0 for i in range(len(surfaces))]
+        return np.asarray(np.all(sides, axis=0))
 
 
 @dataclass(frozen=True)
@@ -221,6 +252,38 @@ def place(points: Array, shift: Array, scale: float, turn: Array | None) -> Arra
     return np.asarray(moved if turn is None else moved @ turn.T)
 
 
+def _turned(profile: Array, axis: Array, segments: int, *, closed: bool) -> Facets:
+    """Return the facets of a profile of radii and heights that turns about an axis.
+
+    The number of the profile's segment takes the place of the surface of each.
+    """
+    ring = axial.circle(2 * np.pi * np.arange(segments) / segments, *axial.frame(axis))
+    radius, height = profile.T[:, :, np.newaxis, np.newaxis]
+    points = radius * ring + height * axis
+    number = np.arange(points[..., 0].size).reshape(points.shape[:2])
+    # A place on the axis is one point, and places of the profile that are equal have the same ones.
+    number[profile[:, 0] == 0] = number[profile[:, 0] == 0][:, :1]
+    for i in range(1, len(profile)):
+        if np.array_equal(profile[i], profile[i - 1]):
+            number[i] = number[i - 1]
+    below = np.roll(number, -1, axis=0)
+    if not closed:
+        number, below = number[:-1], below[:-1]
+    beside, across = np.roll(number, -1, axis=1), np.roll(below, -1, axis=1)
+    corners = np.array([[number, below, across], [number, across, beside]])
+    triangles = np.moveaxis(corners, 1, -1).reshape(-1, 3)
+    part = np.broadcast_to(np.arange(len(number))[:, np.newaxis], corners[:, 0].shape).ravel()
+    # On the axis one of the two triangles of each segment has no area.
+    there = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
+    return points.reshape(-1, 3), triangles[there], part[there]
+
+
+#: Corners of the faces of a block, x before y before z, the side of larger coordinates first.
+_FACES = (
+    (7, 5, 4, 6), (2, 0, 1, 3), (7, 6, 2, 3), (1, 0, 4, 5), (7, 3, 1, 5), (4, 0, 2, 6),
+)  # fmt: skip
+
+
 class Sphere(Primitive):
     """A ball.
 
@@ -239,24 +302,42 @@ class Sphere(Primitive):
 
     def __init__(self, center: VectorLike = (0.0, 0.0, 0.0), radius: float = 1.0) -> None:
         self.center = axial.triple("center", center)
-        self.radius = self.roundness = _check.number("radius", radius, low=0.0)
-
-    def __repr__(self) -> str:
-        return f"Sphere({tuple(map(float, self.center))}, {self.radius:g})"
+        self.radius = _check.number("radius", radius, low=0.0)
 
     @property
-    def empty(self) -> bool:
-        """Whether the solid has no volume."""
-        return self.radius == 0
+    def roundness(self) -> float:
+        """The radius."""
+        return self.radius
 
     @property
     def volume(self) -> float:
         """The volume."""
         return 4 * math.pi / 3 * self.radius**3
 
-    def surfaces(self) -> tuple[Surface, ...]:
+    def surfaces(self) -> Surfaces:
         """Return the surface of the ball."""
-        return (Ball(self.center, self.radius),)
+        return Surfaces.round(self.center, np.array([0.0, 0, 1]), 0.0, self.radius)
+
+    def count(self, segments: int) -> float:
+        """Return the number of points of the facets: one on 0.85 of a segment's square."""
+        return max(4 * math.pi / (0.85 * (2 * math.pi / segments) ** 2), 12.0)
+
+    def facets(self, segments: int) -> Facets:
+        """Return the hull of points that are spread evenly along a spiral of the golden angle."""
+        from scipy.spatial import ConvexHull
+
+        count = int(self.count(segments))
+        i = np.arange(count) + 0.5
+        # Equal steps of the height are equal areas of a sphere; half steps leave the poles free.
+        z = 1 - 2 * i / count
+        ring = axial.circle(i * np.pi * (3 - math.sqrt(5)), *np.eye(3)[:2])
+        points = np.sqrt(1 - z * z)[:, np.newaxis] * ring + np.outer(z, [0, 0, 1])
+        # The hull of points on a sphere is their Delaunay triangulation.
+        triangles = ConvexHull(points).simplices.astype(np.intp)
+        # Qhull gives the corners of its triangles in any order.
+        inward = np.linalg.det(points[triangles]) < 0
+        triangles[inward] = triangles[inward][:, ::-1]
+        return self.center + self.radius * points, triangles, np.zeros(len(triangles), np.intp)
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Sphere:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
@@ -312,16 +393,11 @@ class Frustum(Primitive):
             raise ValueError(_check.message("radii", "two radii (R1, R2)", _check.describe(radii)))
         first, second = (_check.number("radii", float(x), low=0.0) for x in ends)
         self.radii = (first, second)
-        self.roundness = max(self.radii)
-
-    def __repr__(self) -> str:
-        middle, axis = (tuple(map(float, v)) for v in (self.center, self.axis))
-        return f"Frustum({middle}, {axis}, {self.radii}, height={self.height:g})"
 
     @property
-    def empty(self) -> bool:
-        """Whether the solid has no volume."""
-        return self.height == 0 or max(self.radii) == 0
+    def roundness(self) -> float:
+        """The larger radius."""
+        return max(self.radii)
 
     @property
     def volume(self) -> float:
@@ -329,18 +405,19 @@ class Frustum(Primitive):
         a, b = self.radii
         return math.pi / 3 * self.height * (a * a + a * b + b * b)
 
-    def surfaces(self) -> tuple[Surface, ...]:
+    def surfaces(self) -> Surfaces:
         """Return the side, the first end and the second end."""
-        side: Surface = Cone(self.center, self.axis, self.height, self.radii)
-        if self.height == 0:
-            # The side is a flat ring, or empty.
-            # The ring faces the way of its smaller end, as the side did before it was flat.
-            up = 1.0 if self.radii[1] > self.radii[0] else -1.0
-            side = Plane(self.center, up * self.axis)
-        ends = (
-            Plane(self.center + s / 2 * self.height * self.axis, s * self.axis) for s in (1, -1)
-        )
-        return (side, *ends)
+        side = Surfaces.cone(self.center, self.axis, self.height, self.radii)
+        ways = np.outer([1, -1], self.axis)
+        ends = Surfaces.planes(self.center + self.height / 2 * ways, ways)
+        return Surfaces(np.concatenate([side.rows, ends.rows]))
+
+    def facets(self, segments: int) -> Facets:
+        """Return the ends as fans about their middles, and the side between them."""
+        radius, height = [0, *self.radii, 0], self.height / 2 * np.array([1, 1, -1, -1])
+        profile = np.stack([radius, height], axis=1)
+        points, triangles, part = _turned(profile, self.axis, segments, closed=False)
+        return self.center + points, triangles, np.array([1, 0, 2])[part]
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Frustum:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
@@ -390,28 +467,28 @@ class Block(Primitive):
             raise ValueError(_check.message("axes", expected, _check.describe(axes), remedy))
         self.axes = rows
 
-    def __repr__(self) -> str:
-        middle, size = (tuple(map(float, v)) for v in (self.center, self.size))
-        return f"Block({middle}, {size})"
-
-    @property
-    def empty(self) -> bool:
-        """Whether the solid has no volume."""
-        return bool(np.any(self.size == 0))
-
     @property
     def volume(self) -> float:
         """The volume."""
         return float(np.prod(self.size))
 
-    def surfaces(self) -> tuple[Surface, ...]:
-        """Return the six faces."""
-        faces = []
-        for i in range(3):
-            for sign in (1, -1):
-                center = self.center + sign * self.size[i] / 2 * self.axes[i]
-                faces.append(Plane(center, sign * self.axes[i]))
-        return tuple(faces)
+    def surfaces(self) -> Surfaces:
+        """Return the six faces, two across each axis."""
+        ways = np.repeat(self.axes, 2, axis=0) * np.tile([[1.0], [-1.0]], (3, 1))
+        return Surfaces.planes(
+            self.center + np.repeat(self.size / 2, 2)[:, np.newaxis] * ways, ways
+        )
+
+    def facets(self, segments: int) -> Facets:  # noqa: ARG002
+        """Return two triangles for each face."""
+        signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        faces = np.array(_FACES, np.intp)
+        # Left-handed axes are a mirror image, which turns all faces inward.
+        if np.linalg.det(self.axes) < 0:
+            faces = faces[:, ::-1]
+        triangles = faces[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
+        points = self.center + (signs * self.size / 2) @ self.axes
+        return points, triangles, np.repeat(np.arange(6), 2)
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Block:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
@@ -458,25 +535,51 @@ class Torus(Primitive):
         if self.tube_radius >= self.ring_radius:
             expected = f"a radius below ring_radius={self.ring_radius:g}"
             raise ValueError(_check.message("tube_radius", expected, self.tube_radius))
-        self.roundness = self.ring_radius + self.tube_radius
-
-    def __repr__(self) -> str:
-        middle, axis = (tuple(map(float, v)) for v in (self.center, self.axis))
-        return f"Torus({middle}, {axis}, {self.ring_radius:g}, {self.tube_radius:g})"
 
     @property
-    def empty(self) -> bool:
-        """Whether the solid has no volume."""
-        return self.tube_radius == 0
+    def roundness(self) -> float:
+        """The largest radius of the ring."""
+        return self.ring_radius + self.tube_radius
 
     @property
     def volume(self) -> float:
         """The volume."""
         return 2 * math.pi**2 * self.ring_radius * self.tube_radius**2
 
-    def surfaces(self) -> tuple[Surface, ...]:
+    def surfaces(self) -> Surfaces:
         """Return the surface of the ring."""
-        return (Ring(self.center, self.axis, self.ring_radius, self.tube_radius),)
+        return Surfaces.round(self.center, self.axis, self.ring_radius, self.tube_radius)
+
+    def count(self, segments: int) -> float:
+        """Return the largest number of points of the facets."""
+        return segments**2
+
+    def _across(self, segments: int) -> int:
+        """Return the number of segments of the cross-section."""
+        # The sagitta is r / n^2 but for a factor: it becomes the same around the tube as around
+        # the ring.
+        return max(12, math.ceil(segments * math.sqrt(self.tube_radius / self.roundness)))
+
+    def facets(self, segments: int) -> Facets:
+        """Return rows of triangles around the ring and the tube."""
+        rows = self._across(segments)
+        # The outside is at the left hand of the profile.
+        angle = -2 * np.pi * np.arange(rows) / rows
+        profile = self.tube_radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        profile[:, 0] += self.ring_radius
+        points, triangles, part = _turned(profile, self.axis, segments, closed=True)
+        return self.center + points, triangles, np.zeros_like(part)
+
+    def missed(self, segments: int, volume: float) -> float:  # noqa: ARG002
+        """Return the volume of a shell about the surface that holds all facets.
+
+        Linear interpolation of a function of two angles u and v misses at most
+        ``(u^2 |f_uu| + 2 u v |f_uv| + v^2 |f_vv|) / 8`` for steps u and v.
+        """
+        u, v = 2 * math.pi / segments, 2 * math.pi / self._across(segments)
+        error = (u * u * self.roundness + (2 * u * v + v * v) * self.tube_radius) / 8
+        # On both sides of the area 4 pi^2 R r.
+        return 8 * math.pi**2 * self.ring_radius * self.tube_radius * error
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Torus:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""

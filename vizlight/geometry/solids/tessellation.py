@@ -20,8 +20,8 @@ from vizlight import _check
 from vizlight._types import Array, Bools, Indices
 from vizlight.geometry.solids import triangle_mesh
 from vizlight.geometry.solids.exact_surfaces import Surfaces, onto
-from vizlight.geometry.solids.polyhedra import HalfSpace, Polyhedron
-from vizlight.geometry.solids.primitives import EXPECTED, Boolean, Primitive, Solid, Sphere, Torus
+from vizlight.geometry.solids.polyhedra import HalfSpace
+from vizlight.geometry.solids.primitives import EXPECTED, Boolean, Primitive, Solid, Sphere
 from vizlight.geometry.solids.triangle_mesh import Mesh
 
 if TYPE_CHECKING:
@@ -135,20 +135,19 @@ class _Tree:
     tolerance: float
 
     def __post_init__(self) -> None:
-        primitives = list(self.solid.primitives())
-        self.shift, self.scale = _frame(primitives)
+        self.primitives = list(self.solid.primitives())
+        self.shift, self.scale = _frame(self.primitives)
         # Empty parts keep their places, so that the numbers of surfaces agree; they get no mesh.
-        self.parts = [
-            part if part.empty else part.moved(self.shift, self.scale) for part in primitives
-        ]
-        self.surfaces = Surfaces(s for part in self.parts for s in part.surfaces())
-        owned = [len(part.surfaces()) for part in self.parts]
+        moved = [p if p.empty else p.moved(self.shift, self.scale) for p in self.primitives]
+        self.parts = [part.block() if isinstance(part, HalfSpace) else part for part in moved]
+        each = [part.surfaces() for part in self.parts]
+        self.surfaces = Surfaces(np.concatenate([surfaces.rows for surfaces in each]))
+        owned = [len(surfaces) for surfaces in each]
         self.first = np.cumsum(owned) - owned
         self.signs = np.repeat(_signs(self.solid, 1.0), owned)
-        keys = [surface.key(sign) for surface, sign in zip(self.surfaces, self.signs, strict=True)]
         # Faces that coincide must have one number, or they count as two.
-        rows = np.round(np.reshape(keys, (-1, 10)) * EQUAL)
-        _, first, which = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+        keys = np.round(self.surfaces.keys(self.signs) * EQUAL)
+        _, first, which = np.unique(keys, axis=0, return_index=True, return_inverse=True)
         #: Index of the first surface that is equal to each.
         self.equal = first[which.ravel()]
 
@@ -167,14 +166,7 @@ class _Tree:
 
     def points(self, segments: list[int]) -> float:
         """Return the approximate number of points of all primitives."""
-        pairs = zip(self.parts, segments, strict=True)
-        return sum(
-            # The spiral of points on a ball of n segments has n^2 / (0.85 pi) of them.
-            0.38 * n**2 if isinstance(p, Sphere)
-            else len(p.points) if isinstance(p, Polyhedron)
-            else n**2 if isinstance(p, Torus) else 2 * n
-            for p, n in pairs
-        )  # fmt: skip
+        return sum(part.count(n) for part, n in zip(self.parts, segments, strict=True))
 
     def finer(self, segments: list[int]) -> list[int]:
         """Return the segments that keep the facets of a primitive clear of balls inside it.
@@ -189,9 +181,9 @@ class _Tree:
             # The facets of planes are exact: none of them cuts into a ball inside.
             if part.empty or radius == 0:
                 continue
-            side = part.surfaces()[0]
+            side = part.surfaces()
             for k, ball in balls:
-                gap = -float(side.distance(ball.center[np.newaxis])[0]) - ball.radius
+                gap = -float(side.distance(ball.center, 0)) - ball.radius
                 alike = isinstance(part, Sphere) and segments[i] == segments[k]
                 sagitta = radius * (1 - math.cos(math.pi / segments[i]))
                 # A facet cuts as deep into the solid as its sagitta. Balls that touch their surface
@@ -215,7 +207,7 @@ class _Tree:
             # Volume between facets and exact surfaces adds up over the primitives, and bounds the
             # error.
             leaves.append(_leaf(part, count, self.equal[first:]))
-            total += triangle_mesh.missed(part, count, leaves[-1].volume())
+            total += part.missed(count, leaves[-1].volume())
             total += ROUNDING * leaves[-1].surface_area()
         return _combine(self.solid, iter(leaves)), total
 
@@ -224,17 +216,12 @@ class _Tree:
         whole, bound = self.combined(segments)
         facets = whole.to_mesh64()
         triangles = np.asarray(facets.tri_verts, np.intp)
-        points = np.asarray(facets.vert_properties, np.float64)[:, :3]
-        same = np.arange(len(points))
-        # manifold3d splits points whose properties differ; in a closed mesh they are one.
-        same[np.asarray(facets.merge_from_vert, np.intp)] = facets.merge_to_vert
-        used, triangles = np.unique(same[triangles], return_inverse=True)
-        triangles = triangles.reshape(-1, 3).astype(np.intp)
+        points = np.asarray(facets.vert_properties, np.float64)
         # The number of the exact surface that each triangle came from survives the operation.
         patch = np.asarray(facets.face_id, np.intp)
         self._check_bounded(patch)
         shared = self.surfaces, self.signs, self.shift, self.scale
-        mesh = Mesh(points[used], triangles, patch, *shared)
+        mesh = Mesh(points, triangles, patch, *shared)
         placed = place(mesh, tolerance)
         fits = mesh.volume_missing <= self.allowed(mesh)
         if fits and placed.volume_missing > self.allowed(placed):
@@ -246,7 +233,7 @@ class _Tree:
 
     def _check_bounded(self, patch: Indices) -> None:
         """Raise an error if the solid reaches the end of the block in place of a half-space."""
-        for part, first in zip(self.parts, self.first, strict=True):
+        for part, first in zip(self.primitives, self.first, strict=True):
             # Faces 1 to 5 are the block's own; face 0 is the plane.
             ends = self.equal[first + 1 : first + 6]
             if isinstance(part, HalfSpace) and np.any(np.isin(patch, ends)):
@@ -283,15 +270,14 @@ def _leaf(part: Primitive, segments: int, number: Indices) -> manifold3d.Manifol
     """Return the mesh of a primitive, with the number of the surface of each triangle."""
     from manifold3d import Error, Manifold, Mesh64
 
-    mesh = triangle_mesh.mesh(part, segments)
-    used, triangles = np.unique(mesh.triangles, return_inverse=True)
+    points, triangles, patch = part.facets(segments)
+    used, triangles = triangle_mesh.compact(triangles)
     # On a grid of powers of two, so that faces of two solids that coincide do so in every bit.
-    points = np.round(mesh.world(mesh.points[used]) * GRID) / GRID
     leaf = Manifold(
         Mesh64(
-            vert_properties=np.ascontiguousarray(points),
-            tri_verts=np.ascontiguousarray(triangles.reshape(-1, 3), np.uint64),
-            face_id=np.ascontiguousarray(number[mesh.patch], np.uint64),
+            vert_properties=np.round(points[used] * GRID) / GRID,
+            tri_verts=triangles.astype(np.uint64),
+            face_id=number[patch].astype(np.uint64),
         )
     )
     if leaf.status() != Error.NoError:
@@ -423,5 +409,5 @@ def _merge(mesh: Mesh) -> Mesh:
     # Merging would have made two sheets meet in one edge: it is left undone.
     if len(np.unique(edges)) < edges.size:
         return mesh
-    used, triangles = np.unique(triangles, return_inverse=True)
-    return mesh.replace(mesh.points[used], triangles.reshape(-1, 3), mesh.patch[kept])
+    used, triangles = triangle_mesh.compact(triangles)
+    return mesh.replace(mesh.points[used], triangles, mesh.patch[kept])
