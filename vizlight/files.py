@@ -44,7 +44,7 @@ from vizlight.mesh import (
     tables,
 )
 from vizlight.mesh.blocks import DataSetT
-from vizlight.mesh.creases import creases
+from vizlight.mesh.creases import borders, creases
 from vizlight.mesh.derived import (
     check_dataset,
     layer_of,
@@ -69,9 +69,9 @@ except ImportError:  # on Windows
 
 
 __all__ = [
-    "FileError", "atoms_in", "backbone", "creases", "layer_of", "layers", "read", "read_parts",
-    "side_by_side", "stretched", "surface_of", "warped", "with_vectors", "without_fills",
-    "write_mesh",
+    "FileError", "atoms_in", "backbone", "borders", "creases", "layer_of", "layers", "read",
+    "read_parts", "side_by_side", "stretched", "surface_of", "warped", "with_vectors",
+    "without_fills", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.

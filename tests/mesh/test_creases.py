@@ -54,6 +54,23 @@ def test_edges_that_connect_to_no_length_are_roughness():
     assert np.abs(edges.points[:, 0]).max() < 1e-6
 
 
-def test_other_meshes_are_refused():
+def test_borders_are_those_of_holes_and_not_of_cracks():
+    ball = pv.Sphere(theta_resolution=90, phi_resolution=90)
+    assert not files.borders(ball).n_cells
+    heights = np.asarray(ball.cell_centers().points)[:, 2]
+    keep = heights < 0.45
+    open_ball = ball.extract_cells(keep).extract_surface(algorithm="dataset_surface")
+    edges = files.borders(open_ball)
+    assert edges.n_cells == 90
+    # A face that is missing is a crack.
+    keep[np.flatnonzero(np.abs(heights) < 0.01)[0]] = False
+    cracked = ball.extract_cells(keep).extract_surface(algorithm="dataset_surface")
+    np.testing.assert_allclose(files.borders(cracked).points, edges.points)
+    # Faces that share no points have seams for borders.
+    assert not files.borders(pv.Cube()).n_cells
+
+
+@pytest.mark.parametrize("function", [files.creases, files.borders])
+def test_other_meshes_are_refused(function):
     with pytest.raises(TypeError, match=r"^surface: expected a pyvista\.PolyData, got"):
-        files.creases(pv.ImageData(dimensions=(2, 2, 2)))
+        function(pv.ImageData(dimensions=(2, 2, 2)))

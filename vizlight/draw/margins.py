@@ -483,7 +483,9 @@ def data_share(
 
 def written(name: str) -> str:
     """Return a name in words: without underscores, and with a capital where it is a word."""
-    words = " ".join(name.replace("_", " ").split())
+    # Capitals within a name begin words, such as those of velocityField.
+    apart = re.sub(r"(?<=[a-z]{2})(?=[A-Z][a-z]{2})", " ", name)
+    words = " ".join(apart.replace("_", " ").split())
     # Symbols such as dT or u,v are no words.
     is_word = re.match(r"[a-z]{3,}(?=[ ;,.]|$)", words)
     return words[:1].upper() + words[1:] if is_word else words

@@ -65,16 +65,8 @@ LONGEST_SHORT = 3
 MONTH = (27.5, 31.5)
 #: Keywords of the edges of a box, and of what it cuts.
 BOX_EDGES: Keywords = {"color": "gray", "line_width": 1}
-#: Keywords that take the edges of a surface that are its borders.
-BORDERS = {
-    "boundary_edges": True, "feature_edges": False, "manifold_edges": False,
-    "non_manifold_edges": False,
-}  # fmt: skip
 #: Function that makes classes of colours.
 BANDS = "vizlight.maps.bands"
-#: Largest number of them as a share of that of the cells, and distance of places that are one, as a
-#: share of the size of the surface.
-MOST_BORDERS, SEAM = 0.3, 1e-6
 #: Distance from a side of its box, as a share of the size of a surface, at which a point is on it,
 #: and share of the points of borders that are on sides where a box cuts a surface.
 ON_BOX, CUT = 1e-3, 0.95
@@ -267,8 +259,8 @@ class Case:
             return None
         if not isinstance(surface, pv.PolyData):
             return None
-        edges = Step("borders", ".extract_feature_edges", self.surface, **BORDERS)
-        return edges if _are_borders(edges.run(), surface) else None
+        edges = Step("borders", "files.borders", self.surface)
+        return edges if edges.run().n_cells else None
 
     @cached_property
     def creases(self) -> Step | None:
@@ -566,15 +558,6 @@ class Case:
         """Least width of lines, in pixels."""
         width = self.wishes.picture.get("line_width")
         return float(width) if width else round(max(1.5, THIN * max(self.wishes.size)), 1)
-
-
-def _are_borders(edges: pv.PolyData, surface: pv.PolyData) -> bool:
-    """Return whether edges are borders: few, and no seams at which points are stored twice."""
-    if not edges.n_cells or edges.n_cells > MOST_BORDERS * surface.n_cells:
-        return False
-    middles = np.asarray(edges.points, dtype=np.float64)[edges.lines.reshape(-1, 3)[:, 1:]].mean(1)
-    places = np.rint(middles / (SEAM * surface.length)).astype(np.int64)
-    return len(np.unique(places, axis=0)) == edges.n_cells
 
 
 def _is_cut_by_box(surface: pv.PolyData, edges: pv.PolyData) -> bool:
