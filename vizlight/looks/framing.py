@@ -54,6 +54,8 @@ Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 #: Share of the height within which points are a base, least size of one on which a thing stands, as
 #: a share of that of its shadow, and largest size of the others, as a share of this one's.
 FOOT, STANDS, SMALL_BASE = 0.02, 0.25, 0.25
+#: How much more the side of a body counts than other views.
+NEARLY_AS_LARGE = 1.3
 #: Long side over short side from which a flat strip is turned along the picture.
 STRIP = 4.0
 
@@ -300,6 +302,30 @@ def eye_across(mesh: pv.PolyData) -> Viewpoint:
     largest = np.argmax(np.abs(axes), axis=1)
     axes *= np.sign(np.take_along_axis(axes, largest[:, None], axis=1))
     return Viewpoint(_vector(axes[0]), _vector(axes[1]), False, "with its long side across")
+
+
+def eye_on_body(mesh: pv.DataSet) -> Viewpoint:
+    """Return the eye at a side of data in the axes of a body, else before, behind or above it.
+
+    Of these it is the one from which the data are largest, and a side if this is nearly as large.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh with points, x to the right, y forward and z up.
+    """
+    points = _some(np.asarray(mesh.points, dtype=np.float64))
+    points = points[np.isfinite(points).all(axis=1)]
+    if not len(points):
+        return ISOMETRIC
+    low, middle, high = np.percentile(points, (5, 50, 95), axis=0)
+    seen = np.prod(high - low) / np.maximum(high - low, 1e-30) * (NEARLY_AS_LARGE, 1.0, 1.0)
+    axis = int(np.argmax(seen))
+    # The outer side of a hemisphere is toward the eye.
+    sign = -1.0 if axis == 0 and middle[0] < 0 else 1.0
+    toward = _vector(sign * np.eye(3)[axis])
+    words = ("from the left" if sign < 0 else "from the right", "from the front", "from above")
+    return Viewpoint(toward, (0.0, 1.0, 0.0) if axis == 2 else (0.0, 0.0, 1.0), False, words[axis])
 
 
 def _around(

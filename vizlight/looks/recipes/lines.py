@@ -12,7 +12,7 @@ import scipy
 from vizlight.draw.ticks import USUAL, even_levels
 from vizlight.filters.tint import RGB
 from vizlight.looks.contents import Contents
-from vizlight.looks.framing import eye_across
+from vizlight.looks.framing import eye_across, eye_on_body
 from vizlight.looks.recipes import surfaces
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
@@ -71,6 +71,8 @@ def lines(case: Case) -> Drawing:
     thin lines.
     """
     mesh = case.data
+    if case.is_of_body:
+        case = replace(case, viewpoint=eye_on_body(mesh.run()))
     camera = case.camera(mesh)
     scene = case.scene(camera)
     light, pen = dict(case.wishes.light), _pen(case)
@@ -81,7 +83,9 @@ def lines(case: Case) -> Drawing:
     if name == DIRECTION or (name is None and case.wishes.question == "auto" and array is None):
         lit = case.lit(mesh, scene, **light)
         shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
-        layer = Layer(_by_direction(lit), shown | pen)
+        # Outlines tell lines apart by themselves; light would make those toward the eye as dark.
+        even = case.lit(mesh, even_light(camera)) if "halo" in pen else lit
+        layer = Layer(_by_direction(even), shown | pen)
         table = Step("", "vizlight.maps.directions", meaning.ways(mesh.run()))
         key: Keywords = {"question": "value", "cmap": table}
         key["title"] = with_file(mesh, "direction")

@@ -254,13 +254,18 @@ def slices(case: Case, why: str = "") -> Drawing:
     values = _sample(case, array)
     # As radiologists print them.
     is_gray = _is_air(values).any() if np.any(values < 0) else case.is_of_body
-    mesh = Step("slices", ".slice_orthogonal", case.data)
+    body = case.data
+    if is_gray and isinstance(body.run(), pv.ImageData) and not array.of_cells:
+        body = Step("body", "files.without_air", body, array.name)
+    mesh = Step("slices", ".slice_orthogonal", body)
     mesh = Step("joined", ".combine", mesh)
+    if body is not case.data:
+        mesh = Step("parts", ".threshold", mesh, scalars=array.name, all_scalars=True)
     mesh = Step("slices", ".extract_surface", mesh, algorithm="dataset_surface")
     box = Step("box", ".outline", mesh)
     camera = case.camera(box, case.eye(mesh), boxed=True)
     scene = case.wishes.scene("none", camera)
-    colors, note = case.ranged_of(case.data, array, "gray" if is_gray else LIGHTNESS)
+    colors, note = case.ranged_of(body, array, "gray" if is_gray else LIGHTNESS)
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     lit = case.lit(mesh, scene)
     words = f"slices of {array.name} through the middle{why}"
