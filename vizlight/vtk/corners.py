@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 FLAT = 1e-3
 #: Weight of a corner without an angle, which is at the place of the next one.
 LEAST = 1e-12
+#: Weight of the right corners of a square of unit sides, as those of its halves are weighted.
+RIGHT = np.sqrt(np.pi / 2)
 #: Number of corners that are worked on at once.
 CORNERS = 1 << 17
 
@@ -102,7 +104,6 @@ def corner_normals(points: Raw, faces: Iterator[Indices] | list[Indices]) -> Arr
 
 def _add(total: Array, points: Raw, corners: Indices) -> None:
     """Add the weighted normals of all corners of some faces."""
-    s = corners.shape[1]
     low, high = int(corners.min()), int(corners.max()) + 1
     used = None
     if high - low > 8 * corners.size:
@@ -112,60 +113,101 @@ def _add(total: Array, points: Raw, corners: Indices) -> None:
         corners = number.reshape(corners.shape)
         points = points[used]
     at = [np.ascontiguousarray(column) for column in corners.T]
+    places = [points.take(column, axis=0).T.astype(np.float64) for column in at]
     with np.errstate(all="ignore"):
-        places = [points.take(column, axis=0).T.astype(np.float64) for column in at]
-        sides = [places[(i + 1) % s] - places[i] for i in range(s)]
-        squares = [kernels.dot(side, side) for side in sides]
-        longest = np.maximum.reduce(squares)
-        if s == 3:
-            across = kernels.cross(sides[0], sides[1])
-        else:
-            # Twice the area vector, summed over a fan: right for dented polygons too, and a mean
-            # direction of those that are not plane.
-            across = np.zeros_like(places[0])
-            for i in range(1, s - 1):
-                across += kernels.cross(places[i] - places[0], places[i + 1] - places[0])
-        face, area = kernels.unit(across)
-        # Twice the area over the square of the longest side is the height as a share of that side.
-        height = np.minimum(area / (FLAT * longest), 1)
-        lengths = [np.sqrt(square) for square in squares]
-        before = [[part[i - 1] for i in range(s)] for part in (sides, squares, lengths)]
-        if s > 3 and not all(square.all() for square in squares):
-            # Of a point that a face names twice in turn the last counts, and the side before both.
-            for i in (*range(s), *range(s)):
-                same = before[1][i] == 0
-                for part in before:
-                    part[i] = np.where(same, part[i - 1], part[i])
-        for i in range(s):
-            ahead, behind = sides[i], -before[0][i]
-            normal, size = face, area
-            if s > 3:
-                # A polygon that is not plane has another normal at each corner.
-                corner, size = kernels.unit(kernels.cross(ahead, behind))
-                inward = kernels.dot(corner, face)
-                # Sides in one line have no plane of their own, and at a dent their product points
-                # to the back of the face.
-                flat = size <= FLAT * np.maximum(squares[i], before[1][i])
-                normal = np.where(flat, face, np.where(inward < 0, -corner, corner))
-            # The angle of the corner, exact for sharp and for blunt ones.
-            weight = np.arctan2(size, kernels.dot(ahead, behind))
-            near = lengths[i] * before[2][i]
-            # A straight corner has no sine, but an angle.
-            weight *= np.maximum(size, FLAT * near)
-            weight = np.sqrt(weight) * height / near
-            # A corner at the place of the next has no angle: it counts where nothing else does.
-            same = near == 0
-            weight[same] = LEAST * height[same] / np.sqrt(longest[same])
-            # Corners of points that are not finite say nothing, but must not spoil those around
-            # them.
-            weight[~np.isfinite(weight)] = 0
-            for k in range(3):
-                # Faster than np.add.at, as long as a block has points near each other.
-                sums = np.bincount(at[i] - low, normal[k] * weight, high - low)
-                if used is None:
-                    total[k, low:high] += sums
-                else:
-                    total[k, used] += sums
+        weighted = _of_quads(places) if len(at) == 4 else _of_polygons(places)
+    for i, normal in enumerate(weighted):
+        for k in range(3):
+            # Faster than np.add.at, as long as a block has points near each other.
+            sums = np.bincount(at[i] - low, normal[k], high - low)
+            if used is None:
+                total[k, low:high] += sums
+            else:
+                total[k, used] += sums
+
+
+def _of_quads(places: list[Array]) -> list[Array]:
+    """Return the weighted normals of the corners of quads, see :func:`corner_normals`."""
+    sides = [places[(i + 1) % 4] - places[i] for i in range(4)]
+    squares = [kernels.dot(side, side) for side in sides]
+    diagonals = [places[2] - places[0], places[3] - places[1]]
+    longest = np.maximum.reduce(squares)
+    face, area = kernels.unit(kernels.cross(*diagonals))
+    area *= 0.5
+    height = RIGHT * np.minimum(2 * area / (FLAT * longest), 1)
+    lengths = [np.sqrt(square) for square in squares]
+    short = [np.maximum(1 - kernels.dot(side, side) / longest, 0) for side in diagonals]
+    weighted = []
+    for i in range(4):
+        corner = kernels.cross(sides[i - 1], sides[i]) / area
+        # Sides in one line have no plane of their own, and at a dent their product points to the
+        # back of the face.
+        flat = kernels.dot(corner, face) * area <= FLAT * np.maximum(squares[i], squares[i - 1])
+        normal = corner + np.where(flat, 1, short[i % 2]) * (face - corner)
+        near = lengths[i] * lengths[i - 1]
+        normal *= height * (area / near) / np.sqrt(near)
+        # Corners of points that are not finite say nothing, but must not spoil those around them.
+        normal[:, ~np.isfinite(normal).all(axis=0)] = 0
+        weighted.append(normal)
+    twice = np.flatnonzero(np.minimum.reduce(squares) == 0)
+    if len(twice):
+        for all_normals, normal in zip(
+            weighted, _of_polygons([place[:, twice] for place in places]), strict=True
+        ):
+            all_normals[:, twice] = normal
+    return weighted
+
+
+def _of_polygons(places: list[Array]) -> list[Array]:
+    """Return the weighted normals of the corners of polygons, see :func:`corner_normals`."""
+    s = len(places)
+    sides = [places[(i + 1) % s] - places[i] for i in range(s)]
+    squares = [kernels.dot(side, side) for side in sides]
+    longest = np.maximum.reduce(squares)
+    if s == 3:
+        across = kernels.cross(sides[0], sides[1])
+    else:
+        # Twice the area vector, summed over a fan: right for dented polygons too, and a mean
+        # direction of those that are not plane.
+        across = np.zeros_like(places[0])
+        for i in range(1, s - 1):
+            across += kernels.cross(places[i] - places[0], places[i + 1] - places[0])
+    face, area = kernels.unit(across)
+    # Twice the area over the square of the longest side is the height as a share of that side.
+    height = np.minimum(area / (FLAT * longest), 1)
+    lengths = [np.sqrt(square) for square in squares]
+    before = [[part[i - 1] for i in range(s)] for part in (sides, squares, lengths)]
+    if s > 3 and not all(square.all() for square in squares):
+        # Of a point that a face names twice in turn the last counts, and the side before both.
+        for i in (*range(s), *range(s)):
+            same = before[1][i] == 0
+            for part in before:
+                part[i] = np.where(same, part[i - 1], part[i])
+    weighted = []
+    for i in range(s):
+        ahead, behind = sides[i], -before[0][i]
+        normal, size = face, area
+        if s > 3:
+            # A polygon that is not plane has another normal at each corner.
+            corner, size = kernels.unit(kernels.cross(ahead, behind))
+            inward = kernels.dot(corner, face)
+            # Sides in one line have no plane of their own, and at a dent their product points
+            # to the back of the face.
+            flat = size <= FLAT * np.maximum(squares[i], before[1][i])
+            normal = np.where(flat, face, np.where(inward < 0, -corner, corner))
+        # The angle of the corner, exact for sharp and for blunt ones.
+        weight = np.arctan2(size, kernels.dot(ahead, behind))
+        near = lengths[i] * before[2][i]
+        # A straight corner has no sine, but an angle.
+        weight *= np.maximum(size, FLAT * near)
+        weight = np.sqrt(weight) * height / near
+        # A corner at the place of the next has no angle: it counts where nothing else does.
+        same = near == 0
+        weight[same] = LEAST * height[same] / np.sqrt(longest[same])
+        # Corners of points that are not finite say nothing, but must not spoil those around them.
+        weight[~np.isfinite(weight)] = 0
+        weighted.append(normal * weight)
+    return weighted
 
 
 #: Angle in degrees between the normals of two faces above which their common edge is sharp.
