@@ -63,26 +63,29 @@ def _by_size(ids: Indices, ends: Indices) -> Iterator[tuple[Indices, Indices]]:
 def corner_normals(points: Raw, faces: Iterator[Indices] | list[Indices]) -> Array:
     """Return the normals of points, by the corners of the faces around each.
 
-    Each corner has a normal, across both its sides, and counts by the geometric mean of two
-    weights. By its angle (Thuermer and Wuethrich 1998) the normals do not depend on how a plane is
-    cut into triangles. By Max's weight (1999), the sine of the angle over the product of the sides,
-    they are exact for points on a ball, but bend planes beside narrow strips.
+    A corner of a triangle, and of a polygon of more than four sides, has a normal across both its
+    sides, and counts by the geometric mean of two weights. By its angle (Thuermer and Wuethrich
+    1998) the normals do not depend on how a plane is cut into triangles. By Max's weight (1999),
+    the sine of the angle over the product of the sides, they are exact for points on a ball, but
+    bend planes beside narrow strips.
 
-    A corner of a quad counts by the cross product of its sides over the product of their lengths to
-    the power 1.5, as a right corner by the weights above, which is exact for even circles and
-    meridians of a ball. Where the diagonal from it, of length d, is shorter than the longest side,
-    of length l, the area of the quad stands for the share 1 - d^2 / l^2 of the cross product: on a
-    sheared grid the other end of the diagonal is a nearer neighbour than that of the side.
+    A corner of a quad counts by the cross product of its sides over the power 1.5 of the product of
+    their lengths: a right corner as in a triangle. This is exact on balls between even circles and
+    meridians. Where the diagonal from the corner, of length d, is shorter than the longest side of
+    the quad, of length l, the area vector of the quad takes the share 1 - d^2 / l^2 of the cross
+    product: on a sheared grid the far end of the diagonal is a nearer neighbour than that of a
+    side. At dents and straight corners it takes all.
 
     No weights are the best everywhere. The mean error, as a share of that by the best of four
     weights for each surface (equal, area, angle, Max's), is at most 1.05 on isosurfaces through
     even and long voxels, at their borders, on long triangles and on quads sheared by 3; 1.5 on
-    grids of triangles, on quads sheared by 1, on random points, also off by 5 % of an edge, on
-    ellipsoids 20 times as long, and on isosurfaces off by 1 % of a voxel; 2.2 on even quads, on
-    obtuse triangles and those sheared by 2, at their borders, on steep quads sheared by 2, and at
-    ridges; 3 on isosurfaces off by 5 % of an edge; and 10 on quads mostly steeper than 70 degrees. On sheared
-    and steep lattices equal areas are the better differences, and with noise small faces tell
-    least. Weights by area are exact on planes beside narrow strips, Max's on balls.
+    grids of triangles, on quads sheared by 1, on random points, also off by 5 % of an edge, on long
+    ellipsoids, and on isosurfaces off by 1 % of a voxel; 2.2 on even quads, on obtuse triangles and
+    those sheared by 2, at their borders, on steep quads sheared by 2, and at ridges; 3 on
+    isosurfaces off by 5 % of an edge; and 10 on quads mostly steeper than 70 degrees. On steep and
+    sheared lattices weights by area make central differences, with noise small faces tell least,
+    and the corners do not show which it is. Weights by area are exact on planes beside narrow
+    strips, Max's on balls.
 
     As a share of the mean error of VTK's plain means of faces it is at most 0.6 on ellipsoids and
     random points of balls, 0.9 on isosurfaces of a gyroid, random points of the plane, even quads
@@ -136,7 +139,7 @@ def _add(total: Array, points: Raw, corners: Indices) -> None:
                 total[k, used] += sums
 
 
-def _of_quads(places: list[Array]) -> list[Array]:
+def _of_quads(places: Sequence[Array]) -> list[Array]:
     """Return the weighted normals of the corners of quads, see :func:`corner_normals`."""
     sides = [places[(i + 1) % 4] - places[i] for i in range(4)]
     squares = [kernels.dot(side, side) for side in sides]
@@ -147,7 +150,7 @@ def _of_quads(places: list[Array]) -> list[Array]:
     height = RIGHT * np.minimum(2 * area / (FLAT * longest), 1)
     lengths = [np.sqrt(square) for square in squares]
     short = [np.maximum(1 - kernels.dot(side, side) / longest, 0) for side in diagonals]
-    weighted = []
+    weighted: list[Array] = []
     for i in range(4):
         corner = kernels.cross(sides[i - 1], sides[i]) / area
         # Sides in one line have no plane of their own, and at a dent their product points to the
@@ -161,14 +164,13 @@ def _of_quads(places: list[Array]) -> list[Array]:
         weighted.append(normal)
     twice = np.flatnonzero(np.minimum.reduce(squares) == 0)
     if len(twice):
-        for all_normals, normal in zip(
-            weighted, _of_polygons([place[:, twice] for place in places]), strict=True
-        ):
-            all_normals[:, twice] = normal
+        of_triangles = _of_polygons([place[:, twice] for place in places])
+        for normals, those in zip(weighted, of_triangles, strict=True):
+            normals[:, twice] = those
     return weighted
 
 
-def _of_polygons(places: list[Array]) -> list[Array]:
+def _of_polygons(places: Sequence[Array]) -> list[Array]:
     """Return the weighted normals of the corners of polygons, see :func:`corner_normals`."""
     s = len(places)
     sides = [places[(i + 1) % s] - places[i] for i in range(s)]
@@ -193,7 +195,7 @@ def _of_polygons(places: list[Array]) -> list[Array]:
             same = before[1][i] == 0
             for part in before:
                 part[i] = np.where(same, part[i - 1], part[i])
-    weighted = []
+    weighted: list[Array] = []
     for i in range(s):
         ahead, behind = sides[i], -before[0][i]
         normal, size = face, area
