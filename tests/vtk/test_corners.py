@@ -78,6 +78,7 @@ def test_the_corners_of_a_box_do_not_depend_on_how_it_is_cut(scale, random):
         halves = np.concatenate([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]])
         cut = corner_normals(points, [halves])
         assert off(cut, points).max() < 4
+    assert whole.any(axis=1).all()
     assert off(whole, points).max() < 1e-4
 
 
@@ -261,3 +262,54 @@ def test_corners_at_one_place_have_the_normal_of_their_face():
     for face in faces:
         found = corner_normals(points, [face])
         np.testing.assert_allclose(found[face[0]], np.tile([0.0, 0, 1], (face.size, 1)), atol=1e-7)
+
+
+def of_quads(points, quads):
+    """Return normals by the corners of quads, one by one."""
+    total = np.zeros((len(points), 3))
+    for quad in quads:
+        a, b, c, d = points[quad]
+        face = np.cross(c - a, d - b) / 2
+        longest = max(np.linalg.norm(side) for side in (b - a, c - b, d - c, a - d))
+        for i, to in enumerate((c, d, a, b)):
+            at, ahead, behind = (points[quad[(i + step) % 4]] for step in (0, 1, -1))
+            short = max(0, 1 - np.sum((to - at) ** 2) / longest**2)
+            normal = (1 - short) * np.cross(ahead - at, behind - at) + short * face
+            near = np.linalg.norm(ahead - at) * np.linalg.norm(behind - at)
+            total[quad[i]] += normal / near**1.5
+    return total / np.linalg.norm(total, axis=1, keepdims=True)
+
+
+@pytest.mark.parametrize("scale", [1e-150, 1.0, 1e150])
+def test_quads_have_normals_of_their_formula(scale, random):
+    x, y = np.meshgrid(np.arange(6.0), np.arange(6.0))
+    first = np.arange(36).reshape(6, 6)[:-1, :-1].ravel()
+    quads = first[:, np.newaxis] + [0, 1, 7, 6]
+    points = np.stack([x + np.sin(y) * y, y, 0.05 * x * y], axis=-1).reshape(-1, 3)
+    points += random.uniform(-0.1, 0.1, points.shape)
+    found = corner_normals(scale * points, [quads])
+    np.testing.assert_allclose(found, of_quads(points, quads), atol=1e-6)
+
+
+def test_a_smooth_lattice_has_normals_of_second_order():
+    """However its quads are sheared: with twice as many nodes each way a fourth of the error."""
+    errors = []
+    for n in (20, 40):
+        u, v = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n))
+        x, y = u + 1.5 * v + 0.2 * np.sin(3 * u * v), v + 0.2 * u * u
+        points = np.stack([x, y, np.sin(x) * np.cos(2 * y)], axis=-1).reshape(-1, 3)
+        slopes = np.cos(x) * np.cos(2 * y), -2 * np.sin(x) * np.sin(2 * y)
+        exact = np.stack([*slopes, 0 * x - 1], axis=-1).reshape(-1, 3)
+        first = np.arange(n * n).reshape(n, n)[:-1, :-1].ravel()
+        found = corner_normals(points, [first[:, np.newaxis] + [0, 1, n + 1, n]])
+        errors.append(off(found, exact).reshape(n, n)[1:-1, 1:-1].mean())
+    assert errors[1] < 0.3 * errors[0]
+
+
+def test_quads_with_dents_and_straight_corners_have_normals_at_all_four():
+    points = np.array([[2.0, 0], [2.5, 4], [2, 3], [1.5, 4], [3, 0], [3, 1], [3, 2], [2, 1]])
+    points = np.column_stack([points, 0 * points[:, 0]])
+    for quad in ([0, 1, 2, 3], [0, 4, 5, 6], [0, 4, 7, 7]):
+        for turn in range(4):
+            found = corner_normals(points, [np.roll([quad], turn, axis=1)])
+            np.testing.assert_allclose(found[quad], np.tile([0.0, 0, 1], (4, 1)), atol=1e-7)
