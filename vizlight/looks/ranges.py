@@ -20,6 +20,8 @@ FENCE, MOST_OUTSIDE, LEAST_FREED = 4.5, 0.1, 0.32
 SKEWED, DECADES = 5.0, 100.0
 #: Share of the values that are one value far outside, from which it stands for a region apart.
 APART = 0.01
+#: Percentile of the values of a scan from which on they are white.
+BRIGHTEST = 99
 #: Share of amounts that are 0, or too small for a logarithmic bar, from which these are the ground
 #: of a map, and the least amount that is none as a share of the largest, on other bars.
 MOSTLY_NONE, LEAST_AMOUNT = 0.1, 0.05
@@ -84,7 +86,9 @@ class Range(NamedTuple):
         return words + "; one value below, in a region apart, is grey" * self.apart
 
 
-def range_shown(values: Array, *, lengths: bool = False, amounts: bool = False) -> Range:
+def range_shown(
+    values: Array, *, lengths: bool = False, amounts: bool = False, scan: bool = False
+) -> Range:
     """Return the range of a bar that shows values.
 
     Parameters
@@ -95,6 +99,8 @@ def range_shown(values: Array, *, lengths: bool = False, amounts: bool = False) 
         Whether they are lengths of vectors, with a bar that may be logarithmic.
     amounts : bool
         Whether they may be amounts on a map, with such a bar, and a ground where they are 0.
+    scan : bool
+        Whether they are those of a scan in grey, of which the brightest hundredth is white.
 
     Returns
     -------
@@ -103,6 +109,9 @@ def range_shown(values: Array, *, lengths: bool = False, amounts: bool = False) 
         few others take much of the bar; of decades where lengths are skewed.
     """
     low, high = float(values.min()), float(values.max())
+    if scan:
+        ends = even_ends(low, float(np.percentile(values, BRIGHTEST)))
+        return Range(*ends, clipped=(False, high > ends[1]))
     first, median, third = np.percentile(values, (25, 50, 75))
     if (lengths or amounts) and low >= -NOISE * high < 0:
         usual, top = np.percentile(values[values > 0], (50, 98))

@@ -227,13 +227,14 @@ def without_air(volume: pv.ImageData, name: str, /) -> pv.ImageData:
         return volume
     # Gaps of a few steps, as between skin and skull where a scan ends, are none of the air.
     step = max(1, max(values.shape) // COARSE)
-    body = scipy.ndimage.binary_dilation(~is_dark[::step, ::step, ::step], iterations=GAP)
-    body = scipy.ndimage.binary_erosion(body, iterations=GAP, border_value=1)
-    part, count = scipy.ndimage.label(~body)
+    coarse = is_dark[::step, ::step, ::step]
+    part, count = scipy.ndimage.label(
+        scipy.ndimage.binary_erosion(coarse, None, GAP, border_value=1)
+    )
     is_air = np.zeros(count + 1, np.bool_)
     is_air[np.unique(part[sides[::step, ::step, ::step]])] = True
     is_air[0] = False
-    around = is_air[part]
+    around = scipy.ndimage.binary_dilation(is_air[part], iterations=GAP + 1, mask=coarse)
     for axis, size in enumerate(values.shape):
         around = np.take(around, np.arange(size) // step, axis=axis)
     result = volume.copy(deep=False)

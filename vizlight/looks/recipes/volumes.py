@@ -253,7 +253,7 @@ def slices(case: Case, why: str = "") -> Drawing:
     array = case.needed_array
     values = _sample(case, array)
     # As radiologists print them.
-    is_gray = _is_air(values).any() if np.any(values < 0) else case.is_of_body
+    is_gray = bool(_is_air(values).any()) if np.any(values < 0) else case.is_of_body
     body = case.data
     if is_gray and isinstance(body.run(), pv.ImageData) and not array.of_cells:
         body = Step("body", "files.without_air", body, array.name)
@@ -265,7 +265,7 @@ def slices(case: Case, why: str = "") -> Drawing:
     box = Step("box", ".outline", mesh)
     camera = case.camera(box, case.eye(mesh), boxed=True)
     scene = case.wishes.scene("none", camera)
-    colors, note = case.ranged_of(body, array, "gray" if is_gray else LIGHTNESS)
+    colors, note = case.ranged_of(body, array, "gray" if is_gray else LIGHTNESS, scan=is_gray)
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     lit = case.lit(mesh, scene)
     words = f"slices of {array.name} through the middle{why}"
