@@ -329,7 +329,12 @@ def solids_with_walls():
     line = pv.Line((0, 0, 0), (0, 0, 4)).cast_to_unstructured_grid()
     mixed = pv.merge([plane, line, polyhedra(grid, random.random(grid.n_cells) < 0.5), inside])
     mixed.clear_data()
+    # The last point is inside.
+    step = grid.n_points - 1 - grid.find_closest_point((2, 2, 2))
+    voxels = (grid.cells.reshape(-1, 9)[:, 1:] + step) % grid.n_points
+    rolled = pv.UnstructuredGrid({pv.CellType.VOXEL: voxels}, np.roll(grid.points, step, axis=0))
     return {
+        "rolled": rolled,
         "polyhedra": polyhedra(grid, np.ones(grid.n_cells, np.bool_)),
         "walls": mixed,
         "order": mixed.extract_cells(random.permutation(mixed.n_cells)),
@@ -368,3 +373,12 @@ def test_blocks_of_marked_cells_walls_and_polyhedra_have_the_surface_of_the_whol
         found.append(sorted(zip(faces, cells[first:], strict=True)))
     assert len(found[0]) > 20
     assert found[0] == found[1]
+
+
+def test_strips_beside_solid_cells_stay_on_their_surface(monkeypatch):
+    monkeypatch.setattr(hull, "BLOCK", 150)
+    grid = pv.ImageData(dimensions=(5, 6, 5)).cast_to_unstructured_grid()
+    strip = pv.UnstructuredGrid([4, 0, 1, 2, 3], [6], grid.points[:4])
+    surface = pv.wrap(hull.outer_faces(grid.merge(strip))[0])
+    assert surface.n_strips == 1
+    assert surface.GetNumberOfPolys() == 2 * (4 * 5 + 5 * 4 + 4 * 4)
