@@ -14,6 +14,7 @@ from vizlight.observers import legibility, samples
 from vizlight.observers import near as near_cells
 from vizlight.observers.near import near
 from vizlight.shading.options import LightOptions
+from vizlight.vtk.arrays import tangents_of
 from vizlight.vtk.drawn import DrawnSegments, DrawnTriangles
 
 SCENE = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(1, 2, 2)))
@@ -341,8 +342,120 @@ def test_solid_cells_are_read_on_their_surface_with_the_rows_of_their_arrays():
         np.testing.assert_array_equal(part.mesh.points, grid.points[rows])
         np.testing.assert_array_equal(part.inputs.tangents[:], vectors[rows])
         assert part.cells.shape == (2 * 2 * (4 * 3 + 3 * 5 + 4 * 5), 3)
-    grid.cell_data["W"] = np.ones((grid.n_cells, 3))
-    assert samples.part_on(grid, SCENE, LightOptions(tangents="W")).mesh is grid
+
+
+def solids():
+    image = pv.ImageData(dimensions=(6, 5, 7))
+    grids = image, image.cast_to_structured_grid(), image.to_tetrahedra(5)
+    explicit = pv.ExplicitStructuredGrid(image.cast_to_structured_grid())
+    return [*grids, image.cast_to_unstructured_grid(), explicit]
+
+
+def with_vectors(mesh):
+    """Return a mesh with vectors of its cells, also by components."""
+    mesh.clear_data()
+    mesh.cell_data["W"] = np.random.default_rng(1).normal(size=(mesh.n_cells, 3))
+    for i, name in enumerate("uvw"):
+        mesh.cell_data[name] = np.array(mesh.cell_data["W"][:, i])
+    return mesh
+
+
+@pytest.mark.parametrize("name", ["W", "u,v,w"])
+def test_tangents_of_solid_cells_are_means_of_those_inside_too(name):
+    for mesh in map(with_vectors, solids()):
+        values = np.arange(float(mesh.n_points))
+        part = samples.part_on(mesh, SCENE, LightOptions(tangents=name), values=values)
+        assert part.mesh.n_points == len(part.values) == 210 - 4 * 3 * 5
+        expected = tangents_of(mesh, name, 3)[part.values.astype(int)]
+        np.testing.assert_allclose(part.inputs.tangents[:], expected, atol=1e-12)
+        assert part.inputs.line_field == (name == "W")
+        # Where points are split at creases, which is so of conditioned tangents, the faces count.
+        conditioned = LightOptions(tangents=name, conditioned=True)
+        assert samples.part_on(mesh, SCENE, conditioned).mesh is mesh
+    mesh.cell_data["W"] = np.ones((mesh.n_cells, 4))
+    with pytest.raises(ValueError, match="block 2: tangents: expected a point array of 3"):
+        samples.part_on(mesh, SCENE, LightOptions(tangents="W"), "block 2")
+
+
+@pytest.mark.parametrize("name", ["W", "u,v,w"])
+@pytest.mark.parametrize("block", [20, 1 << 16])
+def test_tangents_of_the_cells_of_lines_and_points_are_those_of_the_whole(name, block, monkeypatch):
+    lines, points = curls(20, 3, 2, 30), np.random.default_rng(1).normal(size=(60, 3))
+    mixed = pv.PolyData(lines.points, verts=np.insert(np.arange(9), range(9), 1), lines=lines.lines)
+    monkeypatch.setattr(near_cells, "BLOCK", block)
+    for mesh in map(with_vectors, (lines, mixed, pv.PolyData(points))):
+        light, values = LightOptions(tangents=name), np.arange(60.0)
+        for matrix in (None, MATRIX):
+            monkeypatch.setattr(samples, "WHOLE", 1 << 17)
+            whole = samples.part_on(mesh, SCENE, light, values=values, matrix=matrix)
+            monkeypatch.setattr(samples, "WHOLE", 0)
+            part = samples.part_on(mesh, SCENE, light, values=values, matrix=matrix)
+            assert part.inputs.tangents is None
+            assert part.has_tangents
+            chosen = np.array([40, 3, 4, 20, 3])
+            found, same = part.near(chosen), whole.near(chosen)
+            assert found.inputs.line_field == whole.inputs.line_field == (name == "W")
+            np.testing.assert_array_equal(found.values[found.cells], same.values[same.cells])
+            for rows in ("points", "tangents"):
+                near_rows, whole_rows = (
+                    getattr(p.inputs, rows)[:][p.cells].reshape(-1, 3) for p in (found, same)
+                )
+                np.testing.assert_allclose(near_rows, whole_rows, atol=1e-6)
+            if part.kind == "line":
+                ahead = part.ahead(chosen)
+                np.testing.assert_array_equal(ahead, whole.ahead(chosen))
+                # Means of cells have no sign, and those of components have.
+                assert ahead.any() == (name != "W")
+    conditioned = LightOptions(tangents=name, conditioned="n")
+    lines["n"] = np.asarray(lines.points)
+    assert samples.part_on(lines, SCENE, conditioned).inputs.tangents is not None
+
+
+@pytest.mark.parametrize("name", ["W", "u,v,w"])
+def test_a_moved_mesh_has_the_means_of_its_cells(name):
+    for mesh in (*solids()[:3], pv.Plane(i_resolution=4, j_resolution=3), curls(20, 3)):
+        with_vectors(mesh)
+        part = samples.part_on(mesh, SCENE, LightOptions(tangents=name), matrix=MATRIX)
+        origin = np.arange(mesh.n_points)
+        if part.mesh.n_points < mesh.n_points:
+            origin = samples.hull.outer_faces(mesh)[1]
+        expected = tangents_of(mesh, name, 3)[origin] @ MATRIX[:3, :3].T
+        np.testing.assert_allclose(part.inputs.tangents[:], expected, atol=1e-6)
+        assert part.inputs.line_field == (name == "W")
+
+
+@pytest.mark.parametrize("marked", ["cells", "points"])
+def test_the_surroundings_of_hidden_cells_are_those_of_the_whole(marked, monkeypatch):
+    mesh, random = with_vectors(grid()), np.random.default_rng(0)
+    data, count = mesh.cell_data, mesh.n_cells
+    if marked == "points":
+        data, count = mesh.point_data, mesh.n_points
+    data["vtkGhostType"] = random.choice([0] * 25 + [1, 2, 8, 32], count).astype(np.uint8)
+    light = LightOptions(tangents="W")
+    whole = samples.part_on(mesh, SCENE, light)
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    part = samples.part_on(mesh, SCENE, light)
+    corners = part.cells[:]
+    chosen = random.permutation(np.flatnonzero((corners != corners[:, :1]).any(axis=1)))[:99]
+    found, same = part.near(chosen), whole.cells[chosen]
+    for name in ("tangents", "normals"):
+        rows, expected = (
+            getattr(p.inputs, name)[:][cells] for p, cells in ((found, found.cells), (whole, same))
+        )
+        np.testing.assert_allclose(np.abs(rows), np.abs(expected), atol=2e-6)
+    assert found.inputs.line_field
+
+
+def test_memory_goes_by_the_points_and_not_by_the_cells_around_them():
+    grid = pv.ImageData(dimensions=(60, 60, 60)).cast_to_unstructured_grid()
+    grid.cell_data["W"] = np.ones((grid.n_cells, 3), np.float32)
+    light, points = LightOptions(tangents="W"), np.arange(0, grid.n_points, 9000)
+    near_cells.around_points(grid, points, light)
+    tracemalloc.start()
+    near_cells.around_points(grid, points, light)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 10e6
 
 
 def test_options_that_do_not_fit_lines_are_refused_near_their_segments_too(monkeypatch):

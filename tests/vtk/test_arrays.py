@@ -1,4 +1,4 @@
-"""Points of grids by slice."""
+"""Points of grids by slice, and means of cells at points."""
 
 import numpy as np
 import pyvista as pv
@@ -26,3 +26,13 @@ def test_points_of_a_rectilinear_grid():
     assert rows.shape == (24, 3)
     np.testing.assert_array_equal(rows[0:24], grid.points)
     np.testing.assert_array_equal(rows[5:9], grid.points[5:9])
+
+
+def test_hidden_points_of_a_grid_do_not_change_the_means_of_its_cells():
+    """VTK's filter returns what stood in memory beside such points."""
+    grid = pv.ImageData(dimensions=(6, 5, 4)).cast_to_structured_grid()
+    rows = np.random.default_rng(0).random((grid.n_cells, 2))
+    expected = arrays.means(grid, rows)
+    np.testing.assert_allclose(expected[[0, -1]], rows[[0, -1]])
+    grid.point_data["vtkGhostType"] = np.full(grid.n_points, 2, np.uint8)
+    np.testing.assert_array_equal(arrays.means(grid, rows), expected)

@@ -6,7 +6,7 @@ import pyvista as pv
 
 from vizlight.mesh.subdivision import simplices
 from vizlight.vtk import drawn
-from vizlight.vtk.drawn import DrawnSegments, DrawnTriangles
+from vizlight.vtk.drawn import DrawnCells, DrawnSegments, DrawnTriangles
 
 
 def polygons():
@@ -84,9 +84,7 @@ def test_plain_polygons_of_a_grid_are_a_surface_and_other_meshes_are_not():
     plane = pv.Plane(i_resolution=3, j_resolution=2)
     grid = plane.cast_to_unstructured_grid()
     np.testing.assert_array_equal(DrawnTriangles.of(grid)[:], DrawnTriangles.of(plane)[:])
-    hidden = grid.copy()
-    hidden.cell_data["vtkGhostType"] = np.array([32, 0, 0, 0, 0, 0], np.uint8)
-    for mesh in (hidden, pv.ImageData(dimensions=(3, 3, 3)), pv.Line(), pv.PolyData(np.eye(3)),
+    for mesh in (pv.ImageData(dimensions=(3, 3, 3)), pv.Line(), pv.PolyData(np.eye(3)),
                  pv.UnstructuredGrid(), pv.ImageData(dimensions=(5, 1, 1))):  # fmt: skip
         assert DrawnTriangles.of(mesh) is None
 
@@ -110,6 +108,49 @@ def test_lines_of_a_point_and_lines_beside_faces_have_no_segments_in_memory():
     assert DrawnSegments.of(mesh) is None
     assert DrawnSegments.of(pv.Plane()) is None
     assert DrawnSegments.of(polygons()) is None
-    hidden = pv.Line()
-    hidden.cell_data["vtkGhostType"] = np.zeros(1, np.uint8)
-    assert DrawnSegments.of(hidden) is None
+
+
+@pytest.mark.parametrize("marked", ["cells", "points"])
+def test_hidden_cells_are_those_that_vtk_does_not_draw(marked):
+    """VTK hides cells of grids of one layer, and draws those of surfaces, lines and flat cells."""
+    image, random = pv.ImageData(dimensions=(6, 5, 1)), np.random.default_rng(0)
+    plane = pv.Plane(i_resolution=5, j_resolution=4)
+    lines = pv.PolyData(plane.points, lines=np.insert(plane.regular_faces, 0, 4, axis=1).ravel())
+    grids = image, image.cast_to_structured_grid(), image.cast_to_rectilinear_grid()
+    for mesh in (*grids, plane, plane.cast_to_unstructured_grid(), lines):
+        mesh.clear_data()
+        kind = DrawnSegments if mesh is lines else DrawnTriangles
+        every = kind.of(mesh)[:]
+        data, marks = mesh.cell_data, [0, 0, 0, 1, 2, 8, 32, 41]
+        if marked == "points":
+            data, marks = mesh.point_data, [0] * 9 + [1, 2, 3]
+        count = mesh.n_points if marked == "points" else mesh.n_cells
+        data["vtkGhostType"] = random.choice(marks, count).astype(np.uint8)
+        found = kind.of(mesh)
+        there = (found[:] != found[:][:, :1]).any(axis=1)
+        np.testing.assert_array_equal(found[:][there], every[there])
+        cells = np.unique(found.cells(slice(None))[there])
+        np.testing.assert_array_equal(found.around(np.arange(mesh.n_points)), cells)
+        if mesh in grids:
+            surface = mesh.extract_surface(algorithm="geometry", pass_cellid=True)
+            np.testing.assert_array_equal(cells, np.sort(surface["vtkOriginalCellIds"]))
+            assert 5 < len(cells) < 18
+        else:
+            assert there.all()
+
+
+def test_all_cells_of_a_mesh_have_their_corners():
+    image = pv.ImageData(dimensions=(4, 3, 5))
+    grid, surface = image.cast_to_unstructured_grid(), polygons()
+    for mesh in (image, image.cast_to_structured_grid(), grid, surface):
+        cells, corners = [], []
+        for kind in DrawnCells.all_of(mesh):
+            around = kind.around(np.arange(mesh.n_points))
+            ids, ends = kind.corners(around)
+            cells += kind.cells_of(around).tolist()
+            corners += [set(some.tolist()) for some in np.split(ids, ends[1:-1])]
+            block = kind.of_block(slice(0, 1))
+            np.testing.assert_array_equal(block[0], ids[: ends[1]])
+            np.testing.assert_array_equal(block[1], ends[:2])
+        assert cells == list(range(mesh.n_cells))
+        assert corners == [set(mesh.get_cell(i).point_ids) for i in cells]

@@ -306,3 +306,79 @@ def test_the_surface_of_many_cells_is_found_by_blocks(block, monkeypatch):
             np.testing.assert_array_equal(surface["v"], origin)
             np.testing.assert_array_equal(surface.points, mesh.points[origin])
             assert surface.point_data.active_normals_name == "n"
+
+
+def polyhedra(grid, chosen):
+    """Return hexahedra, some of them as polyhedra."""
+    voxels = grid.cells.reshape(-1, 9)[:, 1:]
+    sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
+    cells, kinds = [], []
+    for voxel, is_chosen in zip(voxels, chosen, strict=True):
+        faces = [[4, *voxel[side]] for side in sides]
+        cells += [31, 6, *np.ravel(faces)] if is_chosen else [8, *voxel]
+        kinds.append(42 if is_chosen else 11)
+    return pv.UnstructuredGrid(np.array(cells), np.array(kinds, np.uint8), grid.points)
+
+
+def solids_with_walls():
+    random = np.random.default_rng(4)
+    grid = pv.ImageData(dimensions=(5, 6, 5)).cast_to_unstructured_grid()
+    # Two layers of walls, one of them outside.
+    plane = pv.ImageData(dimensions=(5, 6, 1)).cast_to_unstructured_grid()
+    inside = plane.translate((0, 0, 2)).extract_cells(range(3, 17))
+    line = pv.Line((0, 0, 0), (0, 0, 4)).cast_to_unstructured_grid()
+    mixed = pv.merge([plane, line, polyhedra(grid, random.random(grid.n_cells) < 0.5), inside])
+    mixed.clear_data()
+    # The last point is inside.
+    step = grid.n_points - 1 - grid.find_closest_point((2, 2, 2))
+    voxels = (grid.cells.reshape(-1, 9)[:, 1:] + step) % grid.n_points
+    rolled = pv.UnstructuredGrid({pv.CellType.VOXEL: voxels}, np.roll(grid.points, step, axis=0))
+    return {
+        "rolled": rolled,
+        "polyhedra": polyhedra(grid, np.ones(grid.n_cells, np.bool_)),
+        "walls": mixed,
+        "order": mixed.extract_cells(random.permutation(mixed.n_cells)),
+    }
+
+
+SOLIDS = solids_with_walls()
+
+
+@pytest.mark.parametrize("marked", ["", "cells", "points", "a whole block"])
+@pytest.mark.parametrize("name", SOLIDS)
+def test_blocks_of_marked_cells_walls_and_polyhedra_have_the_surface_of_the_whole(
+    name, marked, monkeypatch
+):
+    mesh, random = SOLIDS[name].copy(), np.random.default_rng(1)
+    mesh.clear_data()
+    if marked == "points":
+        mesh.point_data["vtkGhostType"] = random.choice([0] * 20 + [1, 2, 3], mesh.n_points)
+    elif marked:
+        of_cells = random.choice([0] * 9 + [1, 2, 4, 8, 32, 33, 41], mesh.n_cells)
+        of_cells[:30] = 32 if marked == "a whole block" else of_cells[:30]
+        mesh.cell_data["vtkGhostType"] = of_cells
+    for data in (mesh.point_data, mesh.cell_data):
+        if "vtkGhostType" in data:
+            data["vtkGhostType"] = data["vtkGhostType"].astype(np.uint8)
+    mesh.cell_data["c"] = np.arange(mesh.n_cells)
+    found = []
+    for block in (1 << 20, 150):
+        monkeypatch.setattr(hull, "BLOCK", block)
+        surface, origin, cells = hull.outer_faces(mesh)
+        surface = pv.wrap(surface)
+        first = surface.n_verts + surface.n_lines
+        faces = [tuple(origin[face]) for face in surface.irregular_faces]
+        np.testing.assert_array_equal(surface["c"], cells)
+        np.testing.assert_array_equal(surface.points, mesh.points[origin])
+        found.append(sorted(zip(faces, cells[first:], strict=True)))
+    assert len(found[0]) > 20
+    assert found[0] == found[1]
+
+
+def test_strips_beside_solid_cells_stay_on_their_surface(monkeypatch):
+    monkeypatch.setattr(hull, "BLOCK", 150)
+    grid = pv.ImageData(dimensions=(5, 6, 5)).cast_to_unstructured_grid()
+    strip = pv.UnstructuredGrid([4, 0, 1, 2, 3], [6], grid.points[:4])
+    surface = pv.wrap(hull.outer_faces(grid.merge(strip))[0])
+    assert surface.n_strips == 1
+    assert surface.GetNumberOfPolys() == 2 * (4 * 5 + 5 * 4 + 4 * 4)

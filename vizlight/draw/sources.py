@@ -26,7 +26,7 @@ from vizlight.scene.presets import AnyScene, optional_scene
 from vizlight.shading.display import Bytes, on_colors
 from vizlight.shading.options import FeatureAngle, LightOptions
 from vizlight.vtk.arrays import GridPoints
-from vizlight.vtk.cells import GHOSTS
+from vizlight.vtk.cells import has_marks
 from vizlight.vtk.corners import MANY_SHARP, SHARP
 from vizlight.vtk.normals import Sided, are_of_faces, computed_normals, creases, piece_numbers
 from vizlight.vtk.parts import uses_normals
@@ -193,7 +193,7 @@ def box(mesh: pv.DataSet) -> pv.PolyData | None:
     if not isinstance(mesh, pv.ImageData | pv.RectilinearGrid) or min(mesh.dimensions) < 2:
         return None
     # What is hidden may leave a grid other sides than its box has.
-    if GHOSTS in mesh.point_data or GHOSTS in mesh.cell_data:
+    if has_marks(mesh):
         return None
     size = np.array(mesh.dimensions)
     source, middle = GridPoints(mesh), np.asarray(mesh.center)

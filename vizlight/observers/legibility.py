@@ -20,7 +20,14 @@ from vizlight.mesh.polylines import backdrop
 from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.figures import Legibility
 from vizlight.observers.measure import measure
-from vizlight.observers.samples import WHOLE, camera_of, is_large, is_solid, part_on
+from vizlight.observers.samples import (
+    WHOLE,
+    are_of_cells,
+    camera_of,
+    is_large,
+    is_solid,
+    part_on,
+)
 from vizlight.observers.whole import PRINT, read_picture, reading
 from vizlight.scene import Light, Scene, View
 from vizlight.scene.presets import required_scene
@@ -276,7 +283,7 @@ def _split(mesh: pv.DataSet, options: LightOptions) -> pv.DataSet:
     """Return a mesh with split sharp edges unless it is large; of many solid cells the surface."""
     by_name = all(isinstance(x, str | None) for x in (options.tangents, options.normals))
     many = isinstance(mesh, pv.UnstructuredGrid) and mesh.n_cells > WHOLE
-    if many and by_name and is_solid(mesh, options):
+    if many and by_name and is_solid(mesh, options) and not are_of_cells(mesh, options):
         mesh = pv.wrap(outer_faces(mesh)[0])
     return mesh if is_large(mesh) else with_sharp_edges(mesh, options)
 

@@ -16,7 +16,7 @@ from vizlight.observers.pixels import rows_of
 from vizlight.vtk.arrays import array_of, points_of
 from vizlight.vtk.cells import finite_points, places, triangles
 from vizlight.vtk.corners import all_slivers, joined
-from vizlight.vtk.drawn import BLOCK, DrawnTriangles
+from vizlight.vtk.drawn import BLOCK, DrawnCells, DrawnTriangles
 from vizlight.vtk.normals import NEIGHBOURS
 
 if TYPE_CHECKING:
@@ -126,8 +126,7 @@ def tangents_at(
     for _ in range(RINGS if lines.are_single else 0):
         around = lines.around(np.unique(lines.corners(around)[0]))
     # Segments that may be joined stay together.
-    group = np.cumsum(lines.sizes(around)) // BLOCK * (not lines.are_single)
-    for some in np.split(around, np.flatnonzero(np.diff(group)) + 1):
+    for some in np.split(around, _steps(lines.sizes(around) * (not lines.are_single))):
         ids, ends = lines.corners(some)
         origin, ids = np.unique(ids, return_inverse=True)
         part = pv.PolyData()
@@ -139,6 +138,11 @@ def tangents_at(
     return tangents
 
 
+def _steps(sizes: Indices) -> Indices:
+    """Return where to split cells of some numbers of corners, so that few are looked at at once."""
+    return np.flatnonzero(np.diff(np.cumsum(sizes) // BLOCK)) + 1
+
+
 def near_points(points: ArraySource, cells: Indices, light: LightOptions) -> Near:
     """Return some points of a scan, shape (M, 1), with all that tell their normals.
 
@@ -147,6 +151,37 @@ def near_points(points: ArraySource, cells: Indices, light: LightOptions) -> Nea
     """
     origin = neighbours(points, cells[:, 0], NEIGHBOURS)
     return Near(pv.PolyData(rows_of(points, origin)), light, np.searchsorted(origin, cells), origin)
+
+
+def around_points(mesh: pv.DataSet, corners: Indices, light: LightOptions) -> Near:
+    """Return some points of a mesh, with the cells around each, of which its tangents are means.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh.
+    corners : ndarray of int
+        Numbers of points of the mesh.
+    light : LightOptions
+        How the mesh is lit, by names of arrays of its cells.
+    """
+    origin, at = np.unique(corners, return_inverse=True)
+    part = pv.PolyData()
+    part.points = rows_of(points_of(mesh, None), origin)
+    ids, sizes, cells = ([np.zeros(0, np.intp)] for _ in range(3))
+    for kind in DrawnCells.all_of(mesh):
+        around = kind.around(origin)
+        # Lines may have many points.
+        for some in np.split(around, _steps(kind.sizes(around))):
+            every, ends = kind.corners(some)
+            place = np.minimum(np.searchsorted(origin, every), len(origin) - 1)
+            chosen = origin[place] == every
+            ids.append(place[chosen])
+            sizes.append(np.diff(np.append(0, np.cumsum(chosen))[ends]))
+        cells.append(kind.cells_of(around))
+    part.SetLines(cell_array(np.concatenate(ids), np.cumsum(np.concatenate([[0], *sizes]))))
+    own = _with_rows(part, mesh, light, origin, np.concatenate(cells))
+    return Near(part, own, at.reshape(corners.shape), origin)
 
 
 def neighbours(points: ArraySource, ids: Indices, count: int) -> Indices:

@@ -17,7 +17,7 @@ from vizlight.filters.lighting import part_of
 from vizlight.mesh import subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import length_rows, unit_rows
-from vizlight.observers.near import near, near_points, tangents_at
+from vizlight.observers.near import around_points, near, near_points, tangents_at
 from vizlight.observers.pixels import Cells, rows_of, toward_eye
 from vizlight.scene import Scene, View
 from vizlight.scene.view import as_view, is_camera
@@ -26,7 +26,15 @@ from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.verify.between import Places, interpolated, mean_spaces
 from vizlight.vtk import hull
-from vizlight.vtk.arrays import MadePoints, at_points, is_of_cells, points_of
+from vizlight.vtk.arrays import (
+    MadePoints,
+    at_points,
+    is_of_cells,
+    points_of,
+    tangents_of,
+    without_sign,
+)
+from vizlight.vtk.cells import GHOSTS
 from vizlight.vtk.drawn import DrawnCells, DrawnPoints, DrawnSegments, DrawnTriangles
 from vizlight.vtk.hull import SOLID
 from vizlight.vtk.normals import is_scan
@@ -281,18 +289,20 @@ class SeenMesh:
 
         1 if they run in the sense of the data, -1 against it, 0 without a sense.
         """
-        tangents, light = self.inputs.tangents, self.light
-        ids = self.cells[cells]
         if self.glyph is None and TIME in self.mesh.point_data:
-            time = np.asarray(self.mesh.point_data[TIME])[ids].astype(np.float64)
+            time = np.asarray(self.mesh.point_data[TIME])[self.cells[cells]].astype(np.float64)
             return np.sign(np.diff(time)[:, 0])
-        has_sense = light.tangents is not None and not light.line_field and self.glyph is None
-        if tangents is None or tangents.shape[1] != 3 or not has_sense:
-            return np.zeros(len(ids))
-        start, end = ids.T
+        given = self.light.tangents
+        if given is None or self.light.line_field or without_sign(self.mesh, given):
+            return np.zeros(len(cells))
+        part = self.near(cells)
+        tangents = part.inputs.tangents
+        if tangents is None or tangents.shape[1] != 3 or self.glyph is not None:
+            return np.zeros(len(cells))
+        start, end = part.cells[:].T
         vectors, points = (
             [rows_of(rows, each).astype(np.float64) for each in (start, end)]
-            for rows in (tangents, self.inputs.points)
+            for rows in (tangents, part.inputs.points)
         )
         return np.asarray(np.sign(dots(vectors[0] + vectors[1], points[1] - points[0])))
 
@@ -305,11 +315,17 @@ class SeenMesh:
         corners = self.cells[cells]
         if not self.large:
             return dataclasses.replace(self, cells=corners, values=values)
-        if isinstance(self.cells, DrawnSegments):
-            return self._near_lines(self.cells, cells, values)
         if isinstance(self.cells, DrawnTriangles):
             around = near(self.mesh, self.cells, cells, self.light)
+            light = around.light
+            if self.cells.grid is not None and are_of_cells(self.mesh, self.light):
+                light = _with_means(light, self.mesh, around.origin, self.path, self.scene)
+            mesh, light = moved(around.mesh, light, self.matrix)
+        elif are_of_cells(self.mesh, self.light):
+            around = around_points(self.mesh, corners, self.light)
             mesh, light = moved(around.mesh, around.light, self.matrix)
+        elif isinstance(self.cells, DrawnSegments):
+            return self._near_lines(self.cells, cells, values)
         else:
             around = near_points(self.inputs.points, corners, self.light)
             mesh, light = around.mesh, around.light
@@ -350,11 +366,16 @@ def is_solid(mesh: pv.DataSet, light: LightOptions) -> bool:
     """Return whether the outer surface of cells that fill space has all that a picture shows."""
     if isinstance(mesh, pv.PolyData) or hull.dimension(mesh) != SOLID:
         return False
-    names = light.tangents.split(",") if isinstance(light.tangents, str) else ()
-    # Means of cells are those of all around a point, inside too.
-    if any(map(partial(is_of_cells, mesh), names)):
+    # Points that are split at sharp edges have the means of the faces around.
+    if light.conditioned and are_of_cells(mesh, light):
         return False
     return not hull.is_curved(mesh) and GLYPH not in mesh.point_data
+
+
+def are_of_cells(mesh: pv.DataSet, light: LightOptions) -> bool:
+    """Return whether tangents are means of those of the cells around a point."""
+    names = light.tangents.split(",") if isinstance(light.tangents, str) else ()
+    return any(map(partial(is_of_cells, mesh), names))
 
 
 def _made_near(
@@ -363,8 +384,10 @@ def _made_near(
     """Return whether tangents and normals of a mesh are made near the places that are read."""
     if isinstance(cells, DrawnTriangles):
         return is_large(mesh)
-    if mesh.n_points <= WHOLE or light.positions is not None or light.tangents is not None:
+    if mesh.n_points <= WHOLE or light.positions is not None:
         return False
+    if light.tangents is not None:
+        return are_of_cells(mesh, light) and not light.conditioned
     if isinstance(cells, DrawnSegments):
         # Which of several lines a segment is a part of is known of segments alone.
         apart = cells.are_single or not cells.may_join
@@ -428,7 +451,7 @@ def part_on(
     if is_glyphs:
         more["lit"] = False
     elif is_solid(mesh, options):
-        mesh, options, values = _on_surface(mesh, options, values, flat=flat)
+        mesh, options, values = _on_surface(mesh, path, scene, options, values, flat=flat)
     if matrix is not None and np.array_equal(matrix, np.eye(4)):
         matrix = None
     # A key has no depth by which a cue could fade it.
@@ -470,7 +493,13 @@ def part_on(
 
 
 def _on_surface(
-    mesh: pv.DataSet, options: LightOptions, values: Raw | None, *, flat: bool
+    mesh: pv.DataSet,
+    path: str,
+    scene: Scene,
+    options: LightOptions,
+    values: Raw | None,
+    *,
+    flat: bool,
 ) -> tuple[pv.DataSet, LightOptions, Raw | None]:
     """Return the outer surface of a mesh with its rows of arrays, options and values."""
     surface, origin, cells = hull.outer_faces(mesh)
@@ -479,8 +508,24 @@ def _on_surface(
         for name in ("tangents", "normals")
         if not isinstance(rows := getattr(options, name), str | None)
     }
+    if are_of_cells(mesh, options):
+        options = _with_means(options, mesh, origin, path, scene)
     values = values if values is None else values[cells if flat else origin]
     return pv.wrap(surface), dataclasses.replace(options, **given), values
+
+
+def _with_means(
+    options: LightOptions, mesh: pv.DataSet, origin: Indices, path: str, scene: Scene
+) -> LightOptions:
+    """Return options with tangents that are means of all cells around, inside and hidden too."""
+    light, rows = LightOptions(tangents=options.tangents, line_field=options.line_field), origin
+    # VTK's means leave hidden cells of such a grid out.
+    if not isinstance(mesh, pv.StructuredGrid) or GHOSTS not in mesh.cell_data:
+        mesh, light, rows, _ = around_points(mesh, origin, light)
+    inputs = part_of(mesh, path, scene, light).inputs
+    assert inputs.tangents is not None
+    tangents = inputs.tangents[:][rows]
+    return dataclasses.replace(options, tangents=tangents, line_field=inputs.line_field)
 
 
 def moved(
@@ -508,11 +553,13 @@ def moved(
             matrix, transform_all_input_vectors=False, inplace=False
         )
     turned: Keywords = {}
-    for name, matrix_of_rows in (("tangents", linear.T), ("normals", np.linalg.inv(linear))):
-        array = getattr(options, name)
-        if array is not None:
-            rows = np.asarray(mesh.point_data[array] if isinstance(array, str) else array)
-            turned[name] = (rows.reshape(-1, 3) @ matrix_of_rows).reshape(rows.shape)
+    if (name := options.tangents) is not None:
+        rows = tangents_of(mesh, name, 3)
+        turned["tangents"] = (rows.reshape(-1, 3) @ linear.T).reshape(rows.shape)
+        turned["line_field"] = options.line_field or without_sign(mesh, name)
+    if (name := options.normals) is not None:
+        rows = np.asarray(mesh.point_data[name] if isinstance(name, str) else name)
+        turned["normals"] = rows @ np.linalg.inv(linear)
     return placed, dataclasses.replace(options, **turned)
 
 

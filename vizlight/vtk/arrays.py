@@ -18,7 +18,15 @@ from vizlight import _check
 from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices, Rows
 from vizlight.model import line_fields
 from vizlight.shading.inputs import ArraySource
-from vizlight.vtk.cells import as_numpy, as_vtk, cell_arrays, connectivity, dimensions, places
+from vizlight.vtk.cells import (
+    GHOSTS,
+    as_numpy,
+    as_vtk,
+    cell_arrays,
+    connectivity,
+    dimensions,
+    places,
+)
 
 if TYPE_CHECKING:
     from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
@@ -174,7 +182,7 @@ def tangents_of(mesh: Dataset, value: object, n: int, *, argument: str = "tangen
     """
     if isinstance(value, str):
         _check.text(argument, value, expected="the name of a point array")
-        if is_of_cells(mesh, value):
+        if without_sign(mesh, value):
             return _averaged_tangents(mesh, argument, value, n)
         if n == 3 and "," in value and not mesh.GetPointData().HasArray(value):
             return of_components(mesh, argument, value.split(","))
@@ -213,6 +221,11 @@ def is_of_cells(mesh: Dataset, name: str) -> bool:
     return bool(mesh.GetCellData().HasArray(name) and not mesh.GetPointData().HasArray(name))
 
 
+def without_sign(mesh: Dataset, value: object) -> bool:
+    """Return whether tangents are those of a cell array, the means of which are lines."""
+    return isinstance(value, str) and is_of_cells(mesh, value)
+
+
 def _averaged_tangents(mesh: Dataset, argument: str, value: str, n: int) -> Array:
     """Return tangents of cells at the points: means of outer products, which have no sign."""
     of_cells = named(mesh.GetCellData(), value)
@@ -231,6 +244,8 @@ def means(mesh: Dataset, rows: AnyArray) -> AnyArray:
     # Without the other arrays, which the filter would average too.
     only: Foreign = mesh.NewInstance()
     only.CopyStructure(mesh)
+    # Beside hidden points of a structured grid VTK's means are what stood in memory.
+    only.GetPointData().RemoveArray(GHOSTS)
     only.GetCellData().AddArray(as_vtk(rows, "rows"))
     mean = vtkCellDataToPointData()
     mean.SetInputData(only)

@@ -12,13 +12,12 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstruct
 from vizlight._types import Dataset, Foreign, Indices
 from vizlight.vtk import hull, polylines
 from vizlight.vtk.cells import (
-    GHOSTS,
     POLYDATA,
     as_numpy,
     as_vtk,
-    cell_data,
     connectivity,
     grid_cells,
+    has_marks,
     n_points,
     point_data,
     vtk_points,
@@ -150,8 +149,8 @@ def _of_grid(mesh: vtkUnstructuredGrid) -> object:
     kinds = hull.cell_types(mesh)
     kind = min(kinds, default=0)
     thin = polylines.LINES | polylines.POINTS
-    hidden = any(data(mesh).HasArray(GHOSTS) for data in (point_data, cell_data))
-    return None if hidden or len(kinds) != 1 or kind in thin or hull.is_curved(mesh) else kind
+    others = len(kinds) != 1 or kind in thin or hull.is_curved(mesh)
+    return None if others or has_marks(mesh) else kind
 
 
 def _joined(members: Sequence[_Member], names: Sequence[str]) -> Batch | None:

@@ -43,6 +43,9 @@ if TYPE_CHECKING:
 
 #: Array in which VTK marks cells and points of other pieces, and hidden ones.
 GHOSTS = "vtkGhostType"
+#: Marks of cells that are of another piece, and of those that are refined or hidden; mark of a
+#: hidden point.
+DUPLICATE, HIDDEN, HIDDEN_POINT = 1, 8 | 32, 2
 #: Methods of the classes: on a mesh of PyVista the look-up of one takes longer than the call.
 point_data: Callable[[Foreign], vtkPointData] = vtkDataSet.GetPointData
 cell_data: Callable[[Foreign], vtkCellData] = vtkDataSet.GetCellData
@@ -127,6 +130,33 @@ def connectivity(cells: vtkCellArray) -> tuple[Indices, Indices]:
         as_numpy(cells.GetConnectivityArray()).astype(np.intp, copy=False),
         as_numpy(cells.GetOffsetsArray()).astype(np.intp, copy=False),
     )
+
+
+def has_marks(mesh: Foreign) -> bool:
+    """Return whether VTK's marks stand at the cells or the points of a dataset."""
+    return any(data(mesh).HasArray(GHOSTS) for data in (cell_data, point_data))
+
+
+def unseen(mesh: Foreign, cells: Indices, corners: Callable[[], tuple[Indices, Indices]]) -> Bools:
+    """Return which faces of a grid are marked as none that is drawn.
+
+    Parameters
+    ----------
+    mesh : vtkDataSet
+        Grid.
+    cells : ndarray of int, shape (M,)
+        Cell that each face is of.
+    corners : callable
+        Function that returns the corners of the faces, and where each begins.
+    """
+    of_cells, of_points = (data(mesh).GetArray(GHOSTS) for data in (cell_data, point_data))
+    faces = np.zeros(len(cells), dtype=np.bool_)
+    if of_cells is not None:
+        faces |= as_numpy(of_cells)[cells] & (DUPLICATE | HIDDEN) > 0
+    if of_points is not None and len(faces):
+        ids, ends = corners()
+        faces |= np.logical_or.reduceat(as_numpy(of_points)[ids] & HIDDEN_POINT > 0, ends[:-1])
+    return faces
 
 
 def has_faces(mesh: vtkPolyData) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from vtkmodules.vtkCommonDataModel import (
     VTK_POLYGON,
@@ -17,22 +19,25 @@ from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 from vizlight import _pool
 from vizlight._types import AnyArray, Bools, Dataset, Indices, Rows, Slice
 from vizlight.vtk.cells import (
-    GHOSTS,
     as_numpy,
     as_vtk,
     bare_faces,
+    cell_arrays,
     connectivity,
     dimensions,
     grid_cells,
     has_faces,
+    has_marks,
+    unseen,
 )
 
 #: Numbers of corners.
 SEGMENT, TRIANGLE, QUAD = 2, 3, 4
 #: Number of polygons that are looked at at once.
 BLOCK = 1 << 16
-#: Number of entries of the table of marked points, beyond which some share an entry.
-TABLE = 1 << 20
+#: Least number of entries of the table of marked points, beyond which some share an entry, and
+#: least number of entries for each of them.
+TABLE, SHARE = 1 << 20, 16
 
 
 class DrawnPoints:
@@ -77,6 +82,27 @@ class DrawnCells:
         self._ids: Indices | _GridCorners = as_numpy(whole.GetConnectivityArray())
         self._offsets = np.zeros(0, np.intp) if self._size else as_numpy(whole.GetOffsetsArray())
 
+    @classmethod
+    def all_of(cls, mesh: Dataset) -> list[DrawnCells]:
+        """Return all cells of a mesh by kind, the parts of which are their corners."""
+        if sides := [count for count in dimensions(mesh) if count > 1]:
+            if not isinstance(mesh, vtkExplicitStructuredGrid):
+                cells = cls(vtkCellArray(), 1)
+                cells._take_grid(*sides)
+                return [cells]
+            return [cls(mesh.GetCells(), 1)]
+        kinds, every, first = cell_arrays(mesh), list[DrawnCells](), 0
+        for kind in kinds:
+            every.append(cls(kind, 1, first))
+            first += kind.GetNumberOfCells()
+        return every
+
+    def _take_grid(self, *sides: int) -> None:
+        """Take the cells of a grid of some numbers of points, with corners without memory."""
+        self._ids = _GridCorners(*sides)
+        self._size = self._ids.count
+        self.polygons = len(self._ids) // self._size
+
     @property
     def shape(self) -> tuple[int, int]:
         """Shape of an array of the corners."""
@@ -118,8 +144,8 @@ class DrawnCells:
 
     def around(self, points: Indices) -> Indices:
         """Return the polygons that have a corner among some points."""
-        table = np.zeros(TABLE, dtype=np.bool_)
-        table[points % TABLE] = True
+        table = np.zeros(max(TABLE, SHARE * len(points)), dtype=np.bool_)
+        table[points % len(table)] = True
         # A mask of all points would be as long as the mesh.
         known = np.sort(points)
         found = []
@@ -134,12 +160,20 @@ class DrawnCells:
 
     def _any(self, table: Bools, block: Slice) -> Bools:
         """Return which polygons of a block have a corner in a table of points."""
+        ids, ends = self.of_block(block)
+        known = table[ids % len(table)]
         if self._size:
-            ids = self._ids[self._size * block.start : self._size * block.stop]
-            return np.asarray(table[ids % TABLE].reshape(-1, self._size).any(axis=1))
-        ends = self._offsets[block.start : block.stop + 1]
-        ids = self._ids[ends[0] : ends[-1]]
-        return np.asarray(np.logical_or.reduceat(table[ids % TABLE], ends[:-1] - ends[0]))
+            return np.asarray(known.reshape(-1, self._size).any(axis=1))
+        # Some cells may have no corners.
+        return np.asarray(np.diff(np.append(0, np.cumsum(known))[ends]) > 0)
+
+    def of_block(self, block: Slice) -> tuple[Indices, Indices]:
+        """Return the corners of polygons that follow each other, and where each begins."""
+        if self._size:
+            ends = np.arange(block.start, block.stop + 1) * self._size
+        else:
+            ends = self._offsets[block.start : block.stop + 1]
+        return self._ids[ends[0] : ends[-1]], ends - ends[0]
 
     def _ends(self, polygon: Indices) -> tuple[Indices, Indices]:
         """Return where the corners of polygons begin, and how many they are."""
@@ -197,23 +231,23 @@ class DrawnTriangles(DrawnCells):
             surface = bare_faces(surface, kept)
         super().__init__(surface.GetPolys(), TRIANGLE, cells)
         self._points = surface.GetPoints()
+        #: Grid with hidden cells that they are the cells of, if any.
+        self.grid: Dataset | None = None
 
     @classmethod
     def of(cls, mesh: Dataset) -> DrawnTriangles | None:
         """Return the triangles of a mesh with faces in memory or in rows, else None.
 
-        It is a surface, a grid of plain polygons alone, or one of a single layer of points; what
-        has hidden cells is none of these.
+        It is a surface, a grid of plain polygons alone, or one of a single layer of points. Of the
+        latter alone VTK leaves hidden cells out: their triangles are of one point.
         """
         if isinstance(mesh, vtkPolyData):
             return cls(mesh) if has_faces(mesh) else None
-        if mesh.GetCellData().HasArray(GHOSTS) or mesh.GetPointData().HasArray(GHOSTS):
-            return None
         sides = [count for count in dimensions(mesh) if count > 1]
         if len(sides) == 2 and not isinstance(mesh, vtkExplicitStructuredGrid):
             triangles = cls(vtkPolyData())
-            triangles._ids, triangles._size = _GridCorners(*sides), QUAD
-            triangles.polygons = mesh.GetNumberOfCells()
+            triangles._take_grid(*sides)
+            triangles.grid = mesh if has_marks(mesh) else None
             return triangles
         if not isinstance(mesh, vtkUnstructuredGrid):
             return None
@@ -225,6 +259,19 @@ class DrawnTriangles(DrawnCells):
         surface.SetPolys(grid_cells(mesh))
         return cls(surface)
 
+    def around(self, points: Indices) -> Indices:
+        """Return the polygons that have a corner among some points, but for hidden ones."""
+        polygon = super().around(points)
+        return polygon[~self._unseen(polygon)]
+
+    def _unseen(self, polygon: Indices) -> Bools:
+        """Return which polygons are hidden."""
+        hidden = np.zeros(len(polygon), dtype=np.bool_)
+        for block in [] if self.grid is None else _pool.blocks(len(polygon), BLOCK):
+            some = polygon[block]
+            hidden[block] = unseen(self.grid, some, partial(self.corners, some))
+        return hidden
+
     def _some(self, polygon: Indices, place: Indices) -> Indices:
         start, size = self._ends(polygon)
         fan = [self._ids[start], self._ids[start + place + 1], self._ids[start + place + 2]]
@@ -232,6 +279,8 @@ class DrawnTriangles(DrawnCells):
         many = size > QUAD
         if many.any():
             corners[many] = self._cut(polygon[many], place[many])
+        hidden = self._unseen(polygon)
+        corners[hidden] = corners[hidden, :1]
         return corners
 
     def _cut(self, polygon: Indices, place: Indices) -> Indices:
@@ -273,8 +322,6 @@ class DrawnSegments(DrawnCells):
     @classmethod
     def of(cls, mesh: Dataset) -> DrawnSegments | None:
         """Return the segments of a mesh of lines that stand in memory, else None."""
-        if mesh.GetCellData().HasArray(GHOSTS) or mesh.GetPointData().HasArray(GHOSTS):
-            return None
         if not isinstance(mesh, vtkPolyData) or has_faces(mesh) or not mesh.GetNumberOfLines():
             return None
         lines, first = mesh.GetLines(), mesh.GetNumberOfVerts()
@@ -296,10 +343,13 @@ class DrawnSegments(DrawnCells):
 
 
 class _GridCorners:
-    """Points at the corners of the quadrilaterals of a grid, as an array of them without memory."""
+    """Points at the corners of the cells of a grid, as an array of them without memory."""
 
-    def __init__(self, width: int, height: int) -> None:
-        self._width, self._size = width, QUAD * (width - 1) * (height - 1)
+    def __init__(self, width: int, height: int, depth: int = 1) -> None:
+        self._width, self._height = width, height
+        #: Number of corners of a cell.
+        self.count = QUAD if depth == 1 else 2 * QUAD
+        self._size = self.count * (width - 1) * (height - 1) * max(depth - 1, 1)
 
     def __len__(self) -> int:
         return self._size
@@ -308,9 +358,12 @@ class _GridCorners:
         """Return the points at some corners; those of a quadrilateral stand around it."""
         if isinstance(index, slice):
             index = np.arange(*index.indices(self._size))
-        polygon, corner = np.divmod(index, QUAD)
-        row, column = np.divmod(polygon, self._width - 1)
-        points: Indices = column + (corner % 3 > 0) + self._width * (row + (corner > 1))
+        cell, corner = np.divmod(index, self.count)
+        row, column = np.divmod(cell, self._width - 1)
+        layer, row = np.divmod(row, self._height - 1)
+        above, corner = np.divmod(corner, QUAD)
+        row += (corner > 1) + self._height * (layer + above)
+        points: Indices = column + (corner % 3 > 0) + self._width * row
         return points
 
 

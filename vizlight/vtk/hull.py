@@ -16,6 +16,7 @@ from vtkmodules.vtkCommonDataModel import (
     VTK_BEZIER_CURVE,
     VTK_BEZIER_WEDGE,
     VTK_LAGRANGE_CURVE,
+    VTK_TRIANGLE_STRIP,
     vtkCellArray,
     vtkDataSetAttributes,
     vtkGenericCell,
@@ -28,9 +29,10 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter, vtkGeometryFilter
 
 from vizlight import _pool
-from vizlight._types import AnyArray, Array, Bools, Dataset, Foreign, Indices, Raw
+from vizlight._types import AnyArray, Array, Bools, Dataset, Foreign, Indices, Raw, Slice
 from vizlight.vtk.arrays import points_of
 from vizlight.vtk.cells import (
+    DUPLICATE,
     GHOSTS,
     POLYDATA,
     as_numpy,
@@ -40,10 +42,13 @@ from vizlight.vtk.cells import (
     finite_faces,
     first_twins,
     grid_cells,
+    has_marks,
     places,
     point_data,
     types_of_cells,
+    unseen,
 )
+from vizlight.vtk.drawn import DrawnCells
 
 Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
 
@@ -180,11 +185,22 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
 
 def _numbered_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
     """Return :func:`outer_surface`, and the cell of the mesh that each of its cells is of."""
+    surface, ids = _with_walls(mesh)
+    if _has_walls(mesh):
+        _join_walls(surface, mesh)
+    cells = as_numpy(surface.GetCellData().GetArray(NUMBERS)).astype(np.intp)
+    surface.GetCellData().RemoveArray(NUMBERS)
+    return surface, ids, cells
+
+
+def _with_walls(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
+    """Return :func:`outer_surface` with walls beside faces and with the numbers of its cells."""
     if not mesh.GetNumberOfCells():
         bare, points = vtkPolyData(), vtkPoints()
         points.SetData(as_vtk(points_of(mesh, None)[:]))
         bare.SetPoints(points)
-        return bare, np.arange(mesh.GetNumberOfPoints()), np.zeros(0, np.intp)
+        bare.GetCellData().AddArray(as_vtk(np.zeros(0, np.intp), NUMBERS))
+        return bare, np.arange(mesh.GetNumberOfPoints())
     curved = is_curved(mesh)
     numbered: Foreign = mesh
     if curved:
@@ -220,11 +236,7 @@ def _numbered_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
             cells = as_numpy(surface.GetCellData().GetArray(NUMBERS))[before:]
             surface.SetPolys(_outward(surface, mesh, cells))
         surface, ids = _merged(surface, ids)
-    if _has_walls(mesh):
-        _join_walls(surface, mesh)
-    cells = as_numpy(surface.GetCellData().GetArray(NUMBERS)).astype(np.intp)
-    surface.GetCellData().RemoveArray(NUMBERS)
-    return surface, ids, cells
+    return surface, ids
 
 
 def _has_walls(mesh: Dataset) -> bool:
@@ -333,65 +345,118 @@ def outer_faces(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
     """Return :func:`outer_surface`, and the cell of each face, of many linear cells by blocks.
 
     VTK's filter would take memory for each point and cell of the whole. Faces that two blocks have
-    in common are none of its surface.
+    in common are none of its surface. Lines and vertices are left out.
     """
-    solid_cells = mesh.GetCells() if isinstance(mesh, vtkUnstructuredGrid) else None
-    if solid_cells is None or solid_cells.GetNumberOfConnectivityIds() <= BLOCK:
-        return _numbered_surface(mesh)
-    hidden = mesh.GetPointData().HasArray(GHOSTS) or mesh.GetCellData().HasArray(GHOSTS)
     kinds = cell_types(mesh)
-    if hidden or is_curved(mesh) or _POLYHEDRON in kinds or {*map(_dimension, kinds)} != {SOLID}:
+    flat, solid = ([k for k in kinds if _dimension(k) == n] for n in (SOLID - 1, SOLID))
+    if not isinstance(mesh, vtkUnstructuredGrid) or is_curved(mesh) or VTK_TRIANGLE_STRIP in kinds:
         return _numbered_surface(mesh)
-    count, size = solid_cells.GetNumberOfCells(), solid_cells.IsHomogeneous()
-    ids, types = as_numpy(solid_cells.GetConnectivityArray()), as_numpy(types_of_cells(mesh))
-    offsets = as_numpy(solid_cells.GetOffsetsArray()) if size < 0 else np.zeros(0, np.intp)
-    corners, ends, solids = np.zeros(0, np.intp), np.zeros(1, np.intp), np.zeros(0, np.intp)
-    for block in _pool.blocks(count, max(BLOCK * count // len(ids), 1)):
-        bounds = np.arange(block.start, block.stop + 1) * size
-        if size < 0:
-            bounds = offsets[block.start : block.stop + 1]
-        some = ids[bounds[0] : bounds[-1]]
-        low, high = int(some.min()), int(some.max()) + 1
-        # Neighbouring cells mostly have neighbouring points.
-        own, number = np.arange(low, high), some - low
-        if len(own) > len(some):
-            own, number = np.unique(some, return_inverse=True)
-        points, cells, part = vtkPoints(), vtkCellArray(), vtkUnstructuredGrid()
-        points.SetData(as_vtk(places(mesh)[own]))
-        cells.SetData(*(as_vtk(rows.astype(np.int32)) for rows in (bounds - bounds[0], number)))
-        part.SetPoints(points)
-        part.SetCells(as_vtk(types[block]), cells)
-        surface, origin, solid = _numbered_surface(part)
+    if not solid or mesh.GetCells().GetNumberOfConnectivityIds() <= BLOCK:
+        return _numbered_surface(mesh)
+    types, ghosts = as_numpy(types_of_cells(mesh)), mesh.GetCellData().GetArray(GHOSTS)
+    kept = [mesh.GetCells()]
+    if _POLYHEDRON in kinds:
+        kept += [mesh.GetPolyhedronFaceLocations(), mesh.GetPolyhedronFaces()]
+    every = [DrawnCells(each, 1) for each in kept]
+    corners, ends, cells = np.zeros(0, np.intp), np.zeros(1, np.intp), np.zeros(0, np.intp)
+    size = max(map(len, every))
+    for block in _pool.blocks(len(types), max(BLOCK * len(types) // size, 1)):
+        part, own = _part(mesh, every, types[block], block)
+        if ghosts is not None:
+            marks = as_numpy(ghosts)[block]
+            # What is between cells and their twins in another piece is inside.
+            part.GetCellData().AddArray(as_vtk(np.where(marks & DUPLICATE, 0, marks), GHOSTS))
+        surface, origin = _with_walls(part)
         more, stops = connectivity(surface.GetPolys())
         corners = np.concatenate([corners, own[origin[more]]])
         ends = np.concatenate([ends, ends[-1] + stops[1:]])
-        solids = np.concatenate([solids, solid + block.start])
-        single, sizes = _are_single(corners, ends, low, high), np.diff(ends)
-        corners, solids = corners[np.repeat(single, sizes)], solids[single]
-        ends = np.concatenate([[0], np.cumsum(sizes[single])])
-    points, cells, whole = vtkPoints(), vtkCellArray(), vtkPolyData()
+        first = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
+        number = as_numpy(surface.GetCellData().GetArray(NUMBERS))[first:]
+        cells = np.concatenate([cells, number + block.start])
+        inside = _are_twins(corners, ends, ~np.isin(types[cells], flat), own[0], own[-1])
+        corners, ends, cells = _without(inside, corners, ends, cells)
+    marked = unseen(mesh, cells, lambda: (corners, ends))
+    corners, ends, cells = _without(marked, corners, ends, cells)
+    points, polygons, whole = vtkPoints(), vtkCellArray(), vtkPolyData()
     origin, corners = np.unique(corners, return_inverse=True)
     points.SetData(as_vtk(places(mesh)[origin]))
-    cells.SetData(as_vtk(ends), as_vtk(corners))
+    polygons.SetData(as_vtk(ends), as_vtk(corners))
     whole.SetPoints(points)
-    whole.SetPolys(cells)
+    whole.SetPolys(polygons)
+    if flat:
+        whole.GetCellData().AddArray(as_vtk(cells, NUMBERS))
+        _join_walls(whole, mesh)
+        cells = as_numpy(whole.GetCellData().GetArray(NUMBERS)).copy()
+        whole.GetCellData().RemoveArray(NUMBERS)
     _take_rows(whole.GetPointData(), mesh.GetPointData(), origin)
-    _take_rows(whole.GetCellData(), mesh.GetCellData(), solids)
-    return whole, origin, solids
+    _take_rows(whole.GetCellData(), mesh.GetCellData(), cells)
+    return whole, origin, cells
 
 
-def _are_single(corners: Indices, ends: Indices, low: int, high: int) -> Bools:
-    """Return which polygons have no twin of the same points, from ``low`` to below ``high``."""
-    some = np.logical_and.reduceat((corners >= low) & (corners < high), ends[:-1])
+def _part(
+    grid: vtkUnstructuredGrid, every: Sequence[DrawnCells], types: AnyArray, block: Slice
+) -> tuple[vtkUnstructuredGrid, Indices]:
+    """Return some cells of a grid as one without arrays, and the points that these have, rising.
+
+    Parameters
+    ----------
+    grid : vtkUnstructuredGrid
+        Grid.
+    every : sequence of DrawnCells
+        Its cells, and of polyhedra the faces of each, and the corners of these.
+    types : ndarray of int
+        Types of the cells.
+    block : slice
+        The cells.
+    """
+    ids, ends = every[0].of_block(block)
+    # Neighbouring cells mostly have neighbouring points.
+    low, high = int(ids.min()), int(ids.max()) + 1
+    own = np.arange(low, high) if high - low <= len(ids) else np.unique(ids)
+
+    def cells(ids: Indices, ends: Indices, *, of_points: bool = True) -> vtkCellArray:
+        if of_points:
+            ids = ids - low if len(own) == high - low else np.searchsorted(own, ids)
+        array = vtkCellArray()
+        array.SetData(as_vtk(ends.astype(np.int32)), as_vtk(ids.astype(np.int32)))
+        return array
+
+    part, points, kinds = vtkUnstructuredGrid(), vtkPoints(), as_vtk(types)
+    points.SetData(as_vtk(places(grid)[own]))
+    part.SetPoints(points)
+    if _POLYHEDRON not in types:
+        part.SetCells(kinds, cells(ids, ends))
+        return part, own
+    names, stops = every[1].of_block(block)
+    faces = cells(*every[2].corners(names))
+    numbers = cells(np.arange(len(names)), stops, of_points=False)
+    part.SetPolyhedralCells(kinds, cells(ids, ends), numbers, faces)
+    return part, own
+
+
+def _are_twins(
+    corners: Indices, ends: Indices, solid: Bools, low: int, high: int
+) -> Bools:  # fmt: skip
+    """Return which faces of solid cells have a twin of points from ``low`` to ``high``."""
+    some = np.logical_and.reduceat((corners >= low) & (corners <= high), ends[:-1]) & solid
     sizes, cells = np.diff(ends), vtkCellArray()
     cells.SetData(
         as_vtk(np.concatenate([[0], np.cumsum(sizes[some])])),
         as_vtk(corners[np.repeat(some, sizes)]),
     )
-    first, single = first_twins(cells), np.ones(len(sizes), dtype=np.bool_)
+    first, twins = first_twins(cells), np.zeros(len(sizes), dtype=np.bool_)
     if first is not None:
-        single[some] = np.bincount(first, minlength=len(first))[first] == 1
-    return single
+        twins[some] = np.bincount(first, minlength=len(first))[first] > 1
+    return twins
+
+
+def _without(
+    polygons: Bools, corners: Indices, ends: Indices, cells: Indices
+) -> tuple[Indices, Indices, Indices]:
+    """Return the corners of polygons, where each begins, and their cells, without some."""
+    sizes, kept = np.diff(ends), ~polygons
+    stops = np.concatenate([[0], np.cumsum(sizes[kept])])
+    return corners[np.repeat(kept, sizes)], stops, cells[kept]
 
 
 def surface_of(mesh: Dataset) -> tuple[vtkPolyData, Indices | None]:
@@ -443,7 +508,7 @@ def in_parts(mesh: Dataset) -> TypeGuard[Grid]:
     if count - np.maximum(size - 2, 0).prod() <= FEW * count:
         return False
     # Hidden cells may cut a grid into several pieces, while its parts are taken for one.
-    return not any(data.HasArray(GHOSTS) for data in (mesh.GetPointData(), mesh.GetCellData()))
+    return not has_marks(mesh)
 
 
 def parts(mesh: Grid) -> Iterator[GridPart]:

@@ -17,7 +17,7 @@ from vizlight.shading.inputs import ArraySource, ShadingInputs, Sides
 from vizlight.shading.options import LightOptions
 from vizlight.shading.plan import not_a_line
 from vizlight.vtk import polylines
-from vizlight.vtk.arrays import is_of_cells, named, points_of, tangents_of
+from vizlight.vtk.arrays import named, points_of, tangents_of, without_sign
 from vizlight.vtk.batches import Batch
 from vizlight.vtk.normals import Sided, Turned, Vote, computed_normals, sided_normals
 
@@ -114,9 +114,6 @@ def part_of(
             raise
         # The same kind of error, so that callers tell a wrong type from a wrong value.
         raise type(error)(f"block {path}: {error}") from error
-    # Means of cell arrays have a line but no sign.
-    name = options.tangents
-    has_no_sign = isinstance(name, str) and is_of_cells(mesh, name)
     inputs = ShadingInputs(
         points=points,
         occlusion=share_of(mesh, options.occlusion, path),
@@ -125,7 +122,7 @@ def part_of(
         base_tangents=base,
         dimensions=dimensions,
         two_sided=alike,
-        line_field=options.line_field or has_no_sign,
+        line_field=options.line_field or without_sign(mesh, options.tangents),
         sides=None if sided is None else partial(_sides, sided, points, scene.view, options),
     )
     return Part(inputs, options, sided)
