@@ -110,8 +110,10 @@ def range_shown(
     """
     low, high = float(values.min()), float(values.max())
     if scan:
-        ends = even_ends(low, float(np.percentile(values, BRIGHTEST)))
-        return Range(*ends, clipped=(False, high > ends[1]))
+        end = float(np.percentile(values, BRIGHTEST))
+        step = (end - low) / 10 or 1.0
+        end = _rounded(end, step, np.ceil)
+        return Range(_rounded(low, step, np.floor), end, clipped=(False, high > end))
     first, median, third = np.percentile(values, (25, 50, 75))
     if (lengths or amounts) and low >= -NOISE * high < 0:
         usual, top = np.percentile(values[values > 0], (50, 98))

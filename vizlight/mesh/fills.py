@@ -208,7 +208,7 @@ def without_air(volume: pv.ImageData, name: str, /) -> pv.ImageData:
     >>> scan = pv.ImageData(dimensions=(9, 9, 9))
     >>> scan["T1"] = 100.0 * (np.linalg.norm(scan.points - 4, axis=1) < 3)
     >>> int(np.isnan(files.without_air(scan, "T1")["T1"]).sum())
-    606
+    636
     """
     mesh: object = volume
     if not isinstance(mesh, pv.ImageData):
@@ -237,6 +237,7 @@ def without_air(volume: pv.ImageData, name: str, /) -> pv.ImageData:
     around = scipy.ndimage.binary_dilation(is_air[part], iterations=GAP + 1, mask=coarse)
     for axis, size in enumerate(values.shape):
         around = np.take(around, np.arange(size) // step, axis=axis)
+    around = scipy.ndimage.binary_dilation(around & is_dark, iterations=step, mask=is_dark)
     result = volume.copy(deep=False)
-    result.point_data[name] = np.where(around & is_dark, np.nan, values).ravel(order="F")
+    result.point_data[name] = np.where(around, np.nan, values).ravel(order="F")
     return result

@@ -7,6 +7,7 @@ Where that is in doubt the picture is read back, and the next is drawn if it can
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -78,6 +79,8 @@ WALL_LIGHT: Keywords = {"ambient": 0.72, "diffuse": 0.2, "smooth_shading": True}
 SENSE = "; arrows point downstream"
 #: Stroke lengths that strokes move in a movie where vectors are long.
 TRAVEL = 3.0
+#: Names of temperatures.
+TEMPERATURE = re.compile(r"t|temp(erature)?([ _]?[kc])?|theta")
 #: Share by which the shortest vectors are shorter than most, below which lengths are no speed.
 EVEN = 0.05
 #: Most cells of a volume in which lines are evenly spaced, and the number of lines in larger ones.
@@ -295,15 +298,12 @@ def flow(case: Case) -> Drawing:
     words = f"streamlines of {array.name}"
     notes = []
     if by_speed:
-        speed = own_name(mesh.run(), "speed")
-        speeds = np.asarray(lit.run()[speed], dtype=np.float64)
-        colors, note = case.ranged(speeds, "speed", case.map_on_ground, lengths=True)
+        colors, note, keys = _colors_of_flow(case, mesh, lit)
         notes += [note] if note else []
-        drawn |= {"scalars": speed, "show_scalar_bar": False, **colors}
         # Light on tubes tells their course toward the eye.
-        drawn["render_lines_as_tubes"] = True
-        keys = [_bar(mesh, array.name, colors, SENSE)]
-        words += " in the colours of their speed"
+        drawn |= {"show_scalar_bar": False, **colors, "render_lines_as_tubes": True}
+        shown = str(colors["scalars"])
+        words += f" in the colours of {shown if shown in mesh.run().point_data else 'their speed'}"
     lines = Layer(lit, {"scene": scene, **drawn})
     if "surface" in keywords:
         # The surface that conditions the light of the lines is not drawn with them.
@@ -319,6 +319,29 @@ def flow(case: Case) -> Drawing:
     if case.map_frame is None:
         layers += [*_hull(case, mesh), *_floor(case, box, camera), *case.boxed(box, camera)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
+
+
+def _colors_of_flow(case: Case, mesh: Step, lines: Step) -> tuple[Keywords, str, list[Keywords]]:
+    """Return the colours of streamlines, words on their range, and the key.
+
+    They are those of the temperature if the file has one, which drives the flow or is carried by
+    it, and nobody asks for the vectors alone; else of the speed.
+    """
+    array = case.needed_array
+    warm = next((one for one in case.contents.arrays if _is_temperature(one)), None)
+    if warm is not None and case.wishes.array is None and warm.name in lines.run().point_data:
+        colors, note = case.ranged_of(lines, warm, case.map_on_ground)
+        key = case.bar(warm, colors)
+        title = "temperature" if key["title"] == warm.name else key["title"]
+        return {"scalars": warm.name, **colors}, note, [key | {"title": f"{title}{SENSE}"}]
+    speed = own_name(mesh.run(), "speed")
+    speeds = np.asarray(lines.run()[speed], dtype=np.float64)
+    colors, note = case.ranged(speeds, "speed", case.map_on_ground, lengths=True)
+    return {"scalars": speed, **colors}, note, [_bar(mesh, array.name, colors, SENSE)]
+
+
+def _is_temperature(array: Named) -> bool:
+    return array.role == "values" and TEMPERATURE.fullmatch(array.name.lower()) is not None
 
 
 def _where_it_flows(mesh: Step, name: str) -> Step:
