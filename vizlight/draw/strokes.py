@@ -419,38 +419,51 @@ def _capped(stroke: Stroke, *, joined: bool, ended: bool) -> list[str]:
 
 
 def _border(stroke: Stroke) -> str:
-    """Return the text of a fragment: its distance from the line, its depth, whether it is drawn."""
+    """Return the text of a fragment: its distance from the line, and its depth.
+
+    Nothing is discarded, which costs software renderers a fifth of a frame: corners beyond the
+    halo lie at the far plane, where they are the ground on the ground.
+    """
     band = number(2 * stroke.halo)
+    half = "1.0" if stroke.width is None else _HALF
     # Corners were multiplied by their w, so that what is interpolated is linear on the screen.
     return (
         "  vec3 vizAt = vizLineVSOutput * gl_FragCoord.w;\n"
         "  vec4 vizDepths = vizDeepVSOutput * gl_FragCoord.w;\n"
-        "  float vizHalf = mix(vizDepths.z, vizDepths.w,\n"
-        "    clamp(vizAt.y / max(vizAt.y + vizAt.z, 1e-6), 0.0, 1.0));\n"
-        "  float vizAway = length(vec2(vizAt.x, max(0.0, -min(vizAt.y, vizAt.z)))) - vizHalf;\n"
-        "  float vizBlur = 0.5 * fwidth(vizAway);\n"
-        "  float vizGap = smoothstep(-vizBlur, vizBlur, vizAway);\n"
-        f"  if (vizAway > {band}) discard;\n"
+        "  float vizAway = length(vec2(vizAt.x, max(0.0, -min(vizAt.y, vizAt.z))))\n"
+        f"    - {half};\n"
+        # In halves of a pixel: the border is blurred from -1 to 1.
+        "  float vizBlur = max(0.5 * fwidth(vizAway), 1e-6);\n"
+        "  float vizPixels = vizAway / vizBlur;\n"
+        "  float vizOut = clamp(0.5 + 0.5 * vizPixels, 0.0, 1.0);\n"
         # The blurred border is already behind, so that it hides nothing of a quad that joins, and
         # yet before a surface on which the line lies.
-        "  float vizOut = clamp(0.5 + 0.5 * vizAway / vizBlur, 0.0, 1.0);\n"
         "  float vizNear = vizDepths.x * (1.0 - 0.75 * vizOut);\n"
-        f"  float vizTent = clamp((vizAway - vizBlur) / {band}, 0.0, 1.0);\n"
+        f"  float vizTent = clamp((vizAway - vizBlur) * {number(0.5 / stroke.halo)}, 0.0, 1.0);\n"
         # Before the nearest depth, to which all that is nearer would be clamped alike.
-        "  gl_FragDepth = max(gl_FragCoord.z + vizNear, 1e-3)\n"
+        "  float vizDepth = max(gl_FragCoord.z + vizNear, 1e-3)\n"
         "    + vizTent * (vizDepths.y - vizNear);\n"
+        f"  gl_FragDepth = vizAway > {band} ? 1.0 : vizDepth;\n"
     )
 
 
+#: Half width of a line between its ends, where both have widths of their own.
+_HALF = (
+    "mix(vizDepths.z, vizDepths.w,\n    clamp(vizAt.y / max(vizAt.y + vizAt.z, 1e-6), 0.0, 1.0))"
+)
 #: The rim of a line that is nearly as light as its ground, and the colour of the ground beside it.
+#: VTK discards what is not opaque at all; where a compiler sees that nothing is, frames are faster.
 _GROUNDED = (
     "//VTK::TCoord::Impl\n"
     f"  vec3 vizLuma = {glsl.vector(formulas.LUMA)};\n"
     f"  float vizPale = dot({GROUND}, vizLuma);\n"
     "  vizPale = vizPale < 0.5 ? 0.0\n"
-    f"    : clamp(1.0 - (vizPale - dot(gl_FragData[0].rgb, vizLuma)) / {FAINT}, 0.0, 1.0);\n"
-    f"  float vizPixel = {SAMPLES} * 2.0 * max(vizBlur, 1e-6);\n"
-    f"  float vizRim = smoothstep(-{RIM} * vizPixel, -0.5 * vizPixel, vizAway);\n"
+    f"    : clamp(1.0 - (vizPale - dot(gl_FragData[0].rgb, vizLuma)) * {number(1 / FAINT)}, 0.0, 1.0);\n"
+    f"  float vizRim = clamp(vizPixels * {number(0.5 / (RIM - 0.5))} / {SAMPLES}\n"
+    f"    + {number(RIM / (RIM - 0.5))}, 0.0, 1.0);\n"
+    "  vizRim *= vizRim * (3.0 - 2.0 * vizRim);\n"
     f"  gl_FragData[0].rgb *= 1.0 - {DARKENED} * vizPale * vizRim;\n"
+    "  float vizGap = vizOut * vizOut * (3.0 - 2.0 * vizOut);\n"
     f"  gl_FragData[0].rgb = mix(gl_FragData[0].rgb, {GROUND}, vizGap);\n"
+    "  gl_FragData[0].a = max(gl_FragData[0].a, 1e-30);\n"
 )
