@@ -290,3 +290,16 @@ def test_walls_toward_the_eye_are_left_out_whatever_the_order_of_corners():
         layers = vizlight.look(mesh).drawing.layers
         sides += [layer.keywords["culling"] for layer in layers if "culling" in layer.keywords]
     assert sides == ["front", "back"]
+
+
+def test_streamlines_have_the_colours_of_the_temperature_that_they_carry():
+    volume = pv.ImageData(dimensions=(9, 9, 9))
+    x, y, _ = np.asarray(volume.points).T
+    volume["wind"] = np.column_stack([1 + y, *np.zeros((2, len(y)))])
+    volume["Temp"] = 300 + 9.7 * x
+    look = vizlight.look(volume)
+    assert look.summary.startswith("streamlines of wind in the colours of Temp")
+    assert look.drawing.layers[0].keywords["scalars"] == "Temp"
+    assert look.key[0]["title"] == "temperature; arrows point downstream"
+    asked = vizlight.look(volume, array="wind").drawing
+    assert asked.layers[0].keywords["scalars"] == "speed"

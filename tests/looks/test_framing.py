@@ -110,3 +110,17 @@ def test_a_thing_that_stands_along_y_has_y_up(turn):
 @pytest.mark.parametrize("thing", [pv.Sphere(), pv.Cube(), pv.Cylinder(direction=(0, 1, 0))])
 def test_what_stands_along_several_axes_has_z_up(thing):
     assert eye(thing.triangulate()).up == (0, 0, 1)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "middle", "toward"),
+    [
+        ((130, 170, 120), 0, (1, 0, 0)),
+        ((50, 120, 90), -30, (-1, 0, 0)),
+        ((120, 20, 90), 0, (0, 1, 0)),
+        ((120, 90, 20), 0, (0, 0, 1)),
+    ],
+)
+def test_a_body_is_seen_from_its_side_if_that_is_nearly_as_large(sizes, middle, toward):
+    places = np.random.default_rng(1).uniform(-0.5, 0.5, (500, 3)) * sizes + (middle, 0, 0)
+    assert framing.eye_on_body(pv.PolyData(places)).toward == toward

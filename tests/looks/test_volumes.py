@@ -144,6 +144,8 @@ def test_a_scan_of_a_body_shows_bones_or_slices_but_no_skin():
     assert "bone" in str(bones)
     slices = vizlight.look(scan((99, -1000), (13, 40), (8, 900)), "value")
     assert (slices.shown, slices.drawing.keys[0]["cmap"]) == ("slices", "gray")
+    # Slices end where the air begins.
+    assert np.linalg.norm(look.mesh.points, axis=1).max() < 14.5
 
 
 def test_both_signs_of_an_orbital_are_shown():

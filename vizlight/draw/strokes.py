@@ -422,7 +422,7 @@ def _border(stroke: Stroke) -> str:
     """Return the text of a fragment: its distance from the line, and its depth.
 
     Nothing is discarded, which costs software renderers a fifth of a frame: corners beyond the
-    halo lie at the far plane, where they are the ground on the ground.
+    halo lie at the far plane, where they are the ground on the ground. Outlines are another colour.
     """
     band = number(2 * stroke.halo)
     half = "1.0" if stroke.width is None else _HALF
@@ -443,7 +443,11 @@ def _border(stroke: Stroke) -> str:
         # Before the nearest depth, to which all that is nearer would be clamped alike.
         "  float vizDepth = max(gl_FragCoord.z + vizNear, 1e-3)\n"
         "    + vizTent * (vizDepths.y - vizNear);\n"
-        f"  gl_FragDepth = vizAway > {band} ? 1.0 : vizDepth;\n"
+        + (
+            f"  gl_FragDepth = vizAway > {band} ? 1.0 : vizDepth;\n"
+            if stroke.outline is None
+            else f"  if (vizAway > {band}) discard;\n  gl_FragDepth = vizDepth;\n"
+        )
     )
 
 
@@ -458,7 +462,8 @@ _GROUNDED = (
     f"  vec3 vizLuma = {glsl.vector(formulas.LUMA)};\n"
     f"  float vizPale = dot({GROUND}, vizLuma);\n"
     "  vizPale = vizPale < 0.5 ? 0.0\n"
-    f"    : clamp(1.0 - (vizPale - dot(gl_FragData[0].rgb, vizLuma)) * {number(1 / FAINT)}, 0.0, 1.0);\n"
+    f"    : clamp(1.0 - {number(1 / FAINT)} * (vizPale - dot(gl_FragData[0].rgb, vizLuma)),\n"
+    "      0.0, 1.0);\n"
     f"  float vizRim = clamp(vizPixels * {number(0.5 / (RIM - 0.5))} / {SAMPLES}\n"
     f"    + {number(RIM / (RIM - 0.5))}, 0.0, 1.0);\n"
     "  vizRim *= vizRim * (3.0 - 2.0 * vizRim);\n"

@@ -54,8 +54,9 @@ Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 #: Share of the height within which points are a base, least size of one on which a thing stands, as
 #: a share of that of its shadow, and largest size of the others, as a share of this one's.
 FOOT, STANDS, SMALL_BASE = 0.02, 0.25, 0.25
-#: How much more the side of a body counts than other views.
-NEARLY_AS_LARGE = 1.3
+#: How much more the side of a body counts than other views, and how far the middle of what is on its
+#: left is from that of the body, as a share of its width.
+NEARLY_AS_LARGE, BESIDE = 1.3, 0.1
 #: Long side over short side from which a flat strip is turned along the picture.
 STRIP = 4.0
 
@@ -321,8 +322,8 @@ def eye_on_body(mesh: pv.DataSet) -> Viewpoint:
     low, middle, high = np.percentile(points, (5, 50, 95), axis=0)
     seen = np.prod(high - low) / np.maximum(high - low, 1e-30) * (NEARLY_AS_LARGE, 1.0, 1.0)
     axis = int(np.argmax(seen))
-    # The outer side of a hemisphere is toward the eye.
-    sign = -1.0 if axis == 0 and middle[0] < 0 else 1.0
+    # The outer side of what is on the left is toward the eye.
+    sign = -1.0 if axis == 0 and middle[0] < -BESIDE * (high - low)[0] else 1.0
     toward = _vector(sign * np.eye(3)[axis])
     words = ("from the left" if sign < 0 else "from the right", "from the front", "from above")
     return Viewpoint(toward, (0.0, 1.0, 0.0) if axis == 2 else (0.0, 0.0, 1.0), False, words[axis])

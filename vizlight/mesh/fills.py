@@ -192,8 +192,8 @@ def without_air(volume: pv.ImageData, name: str, /) -> pv.ImageData:
     Returns
     -------
     pyvista.ImageData
-        Copy with NaN in the air; the scan itself where less than half of its sides are dark: at
-        most a tenth of the way from their median to the percentile 99 of all values.
+        Copy with NaN in the air; the scan itself where its sides are not mostly dark: as their
+        median, by less than a tenth of what is between that and the brightest values.
 
     Raises
     ------
@@ -218,13 +218,12 @@ def without_air(volume: pv.ImageData, name: str, /) -> pv.ImageData:
     sides = np.zeros(values.shape, np.bool_)
     for axis in range(3):
         np.moveaxis(sides, axis, 0)[[0, -1]] = True
-    ground, high = (
-        np.nanmedian(values[sides]),
-        np.nanpercentile(rows[:: len(rows) // SAMPLE + 1], 99),
-    )
-    is_dark = values <= ground + DARK * (high - ground)
-    if not ground < high or np.mean(is_dark[sides]) < MOSTLY:
+    ground = np.nanmedian(values[sides])
+    brightest = np.nanpercentile(rows[:: len(rows) // SAMPLE + 1], 99)
+    reach = DARK * (brightest - ground)
+    if not reach > 0 or np.mean(np.abs(values[sides] - ground) <= reach) < MOSTLY:
         return volume
+    is_dark = values <= ground + reach
     # Gaps of a few steps, as between skin and skull where a scan ends, are none of the air.
     step = max(1, max(values.shape) // COARSE)
     coarse = is_dark[::step, ::step, ::step]
