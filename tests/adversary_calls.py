@@ -359,7 +359,7 @@ RETURNED = {
 #: Parts of the protocol between solids, whose arrays `contains` and `tessellate` checked, and
 #: of those of meshes that are lit together and of slabs.
 PROTOCOLS = {
-    Solid: {"combine", "moved", "inside", "box", "surfaces", "primitives"},
+    Solid: {"moved", "inside", "surfaces", "facets", "count", "missed"},
     Shading: {"arrays", "of", "part"},
     Options: {"of"},
     Slabs: {"empty", "nodes"},

@@ -48,9 +48,8 @@ POWER, AIM = 1.5, 0.9
 PIXELS = ((2, None), (2, 92), (1, 92))
 #: Shares of an error by which samples may move, and at which borders may lie off their place.
 STEADY, LOOSE = 0.08, 0.12
-#: Ratio of the radius of a palette of three channels to its largest difference of one, as tried,
-#: and difference that is rounding.
-WIDER, EXACT = (1.4, 1.2, 1.0), 0.1
+#: Difference that is rounding.
+EXACT = 0.1
 #: Most samples of a picture, and most along a side of a pixel.
 SAMPLES, FINE = 12_000_000, 4
 
@@ -176,10 +175,7 @@ class _Drawn:
         moved = steadied(colors, self.shown, self.scale, STEADY * error)
         half = (1 - STEADY - LOOSE) * error
         single = colors.shape[2] == 1
-        for wider in (1.0,) if single else WIDER:
-            palette = palette_of(moved, ground, wider * half, self.scale, self.shown)
-            if palette.error <= half:
-                break
+        palette = palette_of(moved, ground, half, self.scale, self.shown)
         fills: list[Fill] = []
         for face in (levels if single else faces)(palette, moved, self.scale, LOOSE * error):
             color = np.zeros(3)

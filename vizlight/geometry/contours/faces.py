@@ -15,17 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from vizlight._types import Array
+from vizlight.geometry.contours import rings
 from vizlight.geometry.contours.palette import JUMP, Palette
-from vizlight.geometry.contours.rings import (
-    SEEN,
-    STAIR,
-    area_of,
-    beneath,
-    corners_of,
-    squares,
-    traced,
-    vertices,
-)
 from vizlight.geometry.contours.steady import slopes
 
 __all__ = ["Face", "faces"]
@@ -88,33 +79,33 @@ def faces(palette: Palette, samples: Array, scale: int, tolerance: float = 0.0) 
     last = len(palette.colors)
     padded = np.pad(np.where(shown, palette.labels, np.int32(last)), 1, mode="edge")
     padded = np.pad(padded, 1, constant_values=last)
-    at, labels = squares(padded)
+    at, labels = rings.squares(padded)
     # Each label that a square has, once.
     equal = labels[:, :, np.newaxis] == labels[:, np.newaxis]
     square, place = np.nonzero((labels > 0) & ~np.tril(equal, -1).any(axis=2))
     area = labels[square, place].astype(np.intp)
-    rings = traced(at[square], area, equal[square, place], padded)
-    other = padded.ravel()[rings.outer]
+    borders = rings.traced(at[square], area, equal[square, place], padded)
+    other = padded.ravel()[borders.outer]
     around = ((PAD, PAD), (PAD, PAD), (0, 0))
-    mine, its = (palette.centres[side % last] for side in (rings.area, other))
+    mine, its = (palette.centres[side % last] for side in (borders.area, other))
     jump = JUMP * max(palette.error, 0.5)
-    points, sharp = vertices(rings, np.pad(samples, around, mode="edge"), mine, its, jump)
+    points, sharp = rings.vertices(borders, np.pad(samples, around, mode="edge"), mine, its, jump)
     steep = np.pad(slopes(samples, scale), PAD, mode="edge").ravel()
-    slope = np.maximum(steep[rings.inner], steep[rings.outer])
-    cover = np.where(other > rings.area, rings.area + 1, 0)
-    points, reach = beneath(points, rings.starts, padded, cover, REACHES, PARTS, scale)
-    limit = np.clip(tolerance / np.maximum(slope, 1e-6), SEEN, BROAD)
-    limit = np.where(sharp, max(SEEN, STAIR / scale), limit)
+    slope = np.maximum(steep[borders.inner], steep[borders.outer])
+    cover = np.where(other > borders.area, borders.area + 1, 0)
+    points, reach = rings.beneath(points, borders.starts, padded, cover, REACHES, PARTS, scale)
+    limit = np.clip(tolerance / np.maximum(slope, 1e-6), rings.SEEN, BROAD)
+    limit = np.where(sharp, max(rings.SEEN, rings.STAIR / scale), limit)
     pixels = (points - PAD + 0.5) / scale
-    every = corners_of(pixels, rings.starts, np.maximum(limit, SLACK * reach))
-    which = rings.area[rings.starts[:-1]]
+    every = rings.corners_of(pixels, borders.starts, np.maximum(limit, SLACK * reach))
+    which = borders.area[borders.starts[:-1]]
     # What is painted later covers a hole all around which it lies.
-    later = np.logical_and.reduceat(cover > 0, rings.starts[:-1])
+    later = np.logical_and.reduceat(cover > 0, borders.starts[:-1])
     for face in range(1, last + 1):
         kept = [
             every[ring]
             for ring in np.flatnonzero(which == face)
-            if len(every[ring]) and not (later[ring] and area_of(every[ring]) < 0)
+            if len(every[ring]) and not (later[ring] and rings.area_of(every[ring]) < 0)
         ]
         if face == last:
             kept.insert(0, box)

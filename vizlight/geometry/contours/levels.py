@@ -12,18 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vizlight._types import Array, Bools, Indices
+from vizlight.geometry.contours import rings
 from vizlight.geometry.contours.banding import ranges
 from vizlight.geometry.contours.faces import Face
 from vizlight.geometry.contours.palette import JUMP, Palette
-from vizlight.geometry.contours.rings import (
-    STAIR,
-    Rings,
-    beneath,
-    corners_of,
-    squares,
-    traced,
-    vertices,
-)
 from vizlight.geometry.contours.steady import slopes
 
 __all__ = ["levels"]
@@ -71,22 +63,22 @@ def levels(palette: Palette, samples: Array, scale: int, tolerance: float = 0.0)
     values = np.pad(samples, ((pad, pad), (pad, pad), (0, 0)), mode="edge")
     labels, depth = _beneath(shown, BENEATH * scale)
     steep = np.pad(slopes(samples, scale), pad, mode="edge").ravel()
-    rings = _rings(labels, 1)
-    mine, its = palette.centres[rings.area], palette.centres[rings.area - 1]
+    borders = _rings(labels, 1)
+    mine, its = palette.centres[borders.area], palette.centres[borders.area - 1]
     jump = JUMP * max(palette.error, 0.5)
-    points, sharp = vertices(rings, values, mine, its, jump)
-    at = labels.ravel()[rings.inner].astype(np.intp)
-    under = depth.ravel()[rings.inner]
-    slope = np.maximum(steep[rings.inner], steep[rings.outer])
-    cover = _covers(rings.area, at, slope, palette.error, sharp=sharp)
+    points, sharp = rings.vertices(borders, values, mine, its, jump)
+    at = labels.ravel()[borders.inner].astype(np.intp)
+    under = depth.ravel()[borders.inner]
+    slope = np.maximum(steep[borders.inner], steep[borders.outer])
+    cover = _covers(borders.area, at, slope, palette.error, sharp=sharp)
     cover[under > 0] = 0
-    points, reach = beneath(points, rings.starts, labels, cover, REACHES, PARTS, scale)
+    points, reach = rings.beneath(points, borders.starts, labels, cover, REACHES, PARTS, scale)
     limit = _limits(slope, palette.error, tolerance)
-    limit = np.where(sharp, STAIR / scale, limit)
+    limit = np.where(sharp, rings.STAIR / scale, limit)
     limit = np.where(under > 0, FREE * under / scale, limit)
     limit = np.maximum(limit, SLACK * reach)
-    every = corners_of((points - pad + 0.5) / scale, rings.starts, limit)
-    which = rings.area[rings.starts[:-1]]
+    every = rings.corners_of((points - pad + 0.5) / scale, borders.starts, limit)
+    which = borders.area[borders.starts[:-1]]
     for level in range(2, len(palette.colors)):
         kept = [every[i] for i in np.flatnonzero(which == level) if len(every[i])]
         if kept:
@@ -94,9 +86,11 @@ def levels(palette: Palette, samples: Array, scale: int, tolerance: float = 0.0)
     ground = _rings((shown == 0).astype(np.int32), 0)
     blank = np.zeros((len(ground.area), 1))
     # All of it is between surfaces.
-    points, _ = vertices(ground, values, blank, blank, -1.0)
-    limit = np.full(len(points), STAIR / scale)
-    kept = [r for r in corners_of((points - pad + 0.5) / scale, ground.starts, limit) if len(r)]
+    points, _ = rings.vertices(ground, values, blank, blank, -1.0)
+    limit = np.full(len(points), rings.STAIR / scale)
+    kept = [
+        r for r in rings.corners_of((points - pad + 0.5) / scale, ground.starts, limit) if len(r)
+    ]
     yield Face(palette.colors[0], [box, *kept])
 
 
@@ -134,11 +128,11 @@ def _beneath(shown: NDArray[np.int32], reach: int) -> tuple[NDArray[np.int32], N
     return labels, depth
 
 
-def _rings(labels: NDArray[np.int32], lowest: int) -> Rings:
+def _rings(labels: NDArray[np.int32], lowest: int) -> rings.Rings:
     """Return the rings around all that is above each level from the lowest on."""
-    at, corner = squares(labels)
+    at, corner = rings.squares(labels)
     square, level = ranges(np.maximum(corner.min(axis=1), lowest) + 1, corner.max(axis=1) + 1)
-    return traced(at[square], level, corner[square] >= level[:, np.newaxis], labels)
+    return rings.traced(at[square], level, corner[square] >= level[:, np.newaxis], labels)
 
 
 def _covers(level: Indices, at: Indices, slope: Array, half: float, *, sharp: Bools) -> Indices:

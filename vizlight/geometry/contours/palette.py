@@ -20,8 +20,6 @@ MOST_FLAT, FEWER = 24, 37
 LEAST = 20
 #: Difference of channels that is rounding.
 ROUNDED = 0.1
-#: Colours that differ by less than this, as a share of the error, are one for the palette.
-BIN = 0.35
 #: Rounds in which specks join the face beside them.
 ROUNDS = 4
 #: Neighbours of a sample, and the number of those of its colour below which it is a speck.
@@ -29,8 +27,6 @@ AROUND = [(down, right) for down in (-1, 0, 1) for right in (-1, 0, 1) if down o
 FEW = 4
 #: Difference up to which the rim of surfaces has the color beside it.
 RIM = 96.0
-#: Colours that are tried for one of the palette.
-CANDIDATES = 4
 #: Difference of neighbouring samples, in errors, above which they are of two surfaces.
 JUMP = 4.0
 
@@ -128,7 +124,7 @@ def nearest_colors(samples: Array, error: float) -> tuple[Array, Indices]:
     rest = np.flatnonzero(number < 0)
     if not len(rest):
         return flat, number
-    centres, nearest = (_even if samples.shape[1] == 1 else _net)(samples[rest], error)
+    centres, nearest = _even(samples[rest], error)
     number[rest] = len(flat) + nearest
     return np.concatenate([flat, centres]), number
 
@@ -186,56 +182,26 @@ def _trim(labels: NDArray[np.int32], samples: Array, centres: Array, scale: int)
 
 
 def _even(samples: Array, error: float) -> tuple[Array, Indices]:
-    """Return evenly spaced levels of one channel, and the nearest to each sample."""
-    low, high = float(samples.min()), float(samples.max())
-    count = max(int(np.ceil((high - low) / (2 * error))), 1)
-    width = (high - low) / count or 1.0
-    number = np.clip((samples[:, 0] - low) / width, 0, count - 1).astype(np.intp)
-    return low + width * (np.arange(count)[:, np.newaxis] + 0.5), number
+    """Return colours of about even levels of channels, and the one nearest to each sample."""
+    channels = [_levels(values, error) for values in samples.T.astype(np.float64)]
+    levels, numbers = zip(*channels, strict=True)
+    shape = [len(each) for each in levels]
+    codes, number = np.unique(np.ravel_multi_index(numbers, shape), return_inverse=True)
+    places = np.unravel_index(codes, shape)
+    return np.stack([x[at] for x, at in zip(levels, places, strict=True)], axis=1), number
 
 
-def _net(samples: Array, error: float) -> tuple[Array, Indices]:
-    """Return colours that cover those of samples, and the nearest to each sample."""
-    size = BIN * error
-    cells = np.floor(samples / size).astype(np.int64)
-    base = cells.min(axis=0)
-    cells -= base
-    spans = cells.max(axis=0) + 1
-    code = (cells[:, 0] * spans[1] + cells[:, 1]) * spans[2] + cells[:, 2]
-    codes, inverse = np.unique(code, return_inverse=True)
-    unique = np.stack(np.unravel_index(codes, spans), axis=1)
-    middles = (unique + base + 0.5) * size
-    # The half diagonal of a bin is added to the distance of its middle.
-    centres = middles[_cover(middles, error - np.sqrt(3) / 2 * size)]
-    tree = scipy.spatial.cKDTree(centres)
-    away, nearest = (np.asarray(a) for a in tree.query(middles, k=[1, min(2, len(centres))]))
-    number = nearest[inverse, 0]
-    # Samples of a bin that is not on one side of all bisectors have each their own.
-    near = np.flatnonzero((away[:, 1] - away[:, 0] < np.sqrt(3) * size)[inverse])
-    number[near] = tree.query(samples[near], workers=-1)[1]
-    return centres, number
+def _levels(values: Array, error: float) -> tuple[Array, Indices]:
+    """Return levels of which one is near each value, and the number of that level.
 
-
-def _cover(points: Array, reach: float) -> Indices:
-    """Return points of which one is within reach of each point, and few of them.
-
-    Points are taken along the axis of their largest spread. The first that is not covered is, by
-    the one of its neighbours that covers most.
+    Each begins at the first value above the one before, so that values that are nearly equal have
+    one level.
     """
-    left = np.ones(len(points), dtype=np.bool_)
-    chosen: list[int] = []
-    if len(points) < 2:
-        return np.arange(len(points))
-    tree = scipy.spatial.cKDTree(points)
-    _, _, axes = np.linalg.svd(np.cov(points.T))
-    for first in np.argsort(points @ axes[0], kind="stable"):
-        if not left[first]:
-            continue
-        near = np.sort(tree.query_ball_point(points[first], reach))
-        near = near[:: max(len(near) // CANDIDATES, 1)]
-        balls = tree.query_ball_point(points[near], reach)
-        best = max(range(len(near)), key=lambda i: np.count_nonzero(left[balls[i]]))
-        # A candidate within reach by rounding only may not cover the point itself.
-        left[balls[best]] = left[first] = False
-        chosen.append(near[best])
-    return np.array(chosen)
+    known = np.unique(values)
+    span = known[-1] - known[0]
+    width = (1 + 1e-9) * span / max(np.ceil(span / (2 * error)), 1)
+    starts = [0]
+    while (end := int(np.searchsorted(known, known[starts[-1]] + width, "right"))) < len(known):
+        starts.append(end)
+    lasts = np.array([*starts[1:], len(known)]) - 1
+    return (known[starts] + known[lasts]) / 2, np.searchsorted(known[starts], values, "right") - 1

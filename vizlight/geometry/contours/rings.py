@@ -143,7 +143,7 @@ def beneath(
     points: Array, starts: Indices, labels: NDArray[np.int32], cover: Indices,
     reaches: Sequence[float], parts: Sequence[float], scale: int,
 ) -> tuple[Array, Array]:  # fmt: skip
-    """Return vertices in samples, moved beneath what covers them, and the distances in pixels.
+    """Return vertices in samples, moved beneath areas that cover them, and distances in pixels.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def beneath(
     reaches : sequence of float
         Distances in pixels to the inside, or below 0 to the outside, tried from the first.
     parts : sequence of float
-        Parts of a distance at which it is looked for what covers it.
+        Parts of a distance at which labels are compared.
     scale : int
         Samples for each pixel, along a side.
     """

@@ -101,11 +101,10 @@ class Solid:
         point : vector of 3 components, default: (0, 0, 0)
             Point of the axis.
         """
-        axis = _check.unit("vector", vector)
-        angle = math.radians(_check.number("angle", angle))
-        # Rodrigues' formula; 2 sin^2(a/2) is 1 - cos(a) without the cancellation at small angles.
-        cross = np.cross(np.eye(3), axis)
-        turn = np.eye(3) + math.sin(angle) * cross + 2 * math.sin(angle / 2) ** 2 * cross @ cross
+        from scipy.spatial.transform import Rotation
+
+        turned = math.radians(_check.number("angle", angle)) * _check.unit("vector", vector)
+        turn = Rotation.from_rotvec(turned).as_matrix()
         middle = _check.coordinates("point", axial.triple("point", point))
         return self.moved(middle, 1.0, turn).moved(-middle, 1.0)
 
