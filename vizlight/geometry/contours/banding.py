@@ -299,21 +299,14 @@ def _touched(
 
     Those have contour points on their edges, or repeated corners.
     """
-    lowest = np.empty(len(triangles), np.intp)
-    crossed_sides = np.empty((len(triangles), 3), np.bool_)
-    touched = np.empty(len(triangles), np.bool_)
-    for start in range(0, len(triangles), BLOCK):
-        rows = slice(start, start + BLOCK)
-        bands = np.searchsorted(levels, at_corners(values, triangles, rows), side="left")
-        lowest[rows] = bands[:, 0]
-        crossed_sides[rows] = bands != np.roll(bands, -1, axis=1)
-        a, b, c = triangles[rows].T
-        touched[rows] = (a == b) | (b == c) | (c == a) | crossed_sides[rows].any(axis=1)
+    bands = np.searchsorted(levels, at_corners(values, triangles, slice(None)), side="left")
+    crossed_sides = bands != np.roll(bands, -1, axis=1)
+    touched = np.any(crossed_sides | (triangles == np.roll(triangles, -1, axis=1)), axis=1)
     if np.any(patch != patch[:1]) and np.any(crossed_sides):
         # At a crease the contour points of one side are corners on the other one, too.
         codes = edge_codes(triangles, int(triangles.max(initial=0)) + 1)
         touched |= np.isin(codes, codes[crossed_sides]).any(axis=1)
-    return lowest, touched
+    return bands[:, 0].copy(), touched
 
 
 def _sides(

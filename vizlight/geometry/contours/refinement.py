@@ -165,11 +165,8 @@ def _settled(surface: LitTriangles, levels: Levels, low: float | None) -> Lumina
     """
     searched = 0
     for _ in range(ROUNDS + 1):
-        values, count = surface.values, len(surface.triangles)
-        top = np.empty(count)
-        for start in range(0, count, BLOCK):
-            block = slice(start, start + BLOCK)
-            top[block] = banding.at_corners(values, surface.triangles, block).max(axis=1)
+        count = len(surface.triangles)
+        top = banding.at_corners(surface.values, surface.triangles, slice(None)).max(axis=1)
         steps = _steps(surface, levels, low)
         allowed = _allowed(levels, steps)
         ceiling = top.max() + STILL * allowed
