@@ -160,7 +160,7 @@ def test_a_title_says_how_often_heights_are_taken(question):
     grid = pv.ImageData(dimensions=(12, 9, 1), spacing=(10, 10, 1))
     grid["elevation"] = np.add.outer(np.arange(9.0), np.arange(12.0) ** 2).ravel()
     raised = {"warp": "elevation"} if question == "auto" else {}
-    for factor, words in ((2, "elevation; heights times 2"), (1, "elevation")):
+    for factor, words in ((2, "elevation; relief 2 times as high"), (1, "elevation")):
         look = vizlight.look(grid, question, exaggeration=factor, size=SIZE, **raised)
         assert look.drawing.keys[0]["title"] == words
 

@@ -54,8 +54,8 @@ Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 #: Share of the height within which points are a base, least size of one on which a thing stands, as
 #: a share of that of its shadow, and largest size of the others, as a share of this one's.
 FOOT, STANDS, SMALL_BASE = 0.02, 0.25, 0.25
-#: How much more the side of a body counts than other views, and how far the middle of what is on its
-#: left is from that of the body, as a share of its width.
+#: How much more the side of a body counts than other views, and how far the middle of what is on
+#: its left is from that of the body, as a share of its width.
 NEARLY_AS_LARGE, BESIDE = 1.3, 0.1
 #: Long side over short side from which a flat strip is turned along the picture.
 STRIP = 4.0

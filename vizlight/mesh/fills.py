@@ -213,6 +213,7 @@ def without_air(volume: pv.ImageData, name: str, /) -> pv.ImageData:
     mesh: object = volume
     if not isinstance(mesh, pv.ImageData):
         raise TypeError(_check.message("volume", "a pyvista.ImageData", _check.describe(mesh)))
+    name = _check.text("name", name, expected="the name of a point array")
     rows = np.asarray(_check.floats("name", records.scalars_of(volume, "name", name)))
     values = rows.reshape(volume.dimensions, order="F")
     sides = np.zeros(values.shape, np.bool_)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vizlight._types import Array, Bools, Foreign, Indices, Slice
+from vizlight._types import Array, Bools, Indices, Slice
 from vizlight.geometry.contours.spacing import LuminanceSteps
 
 Luminance = Callable[[Indices, Indices, Array, Indices], Array]
@@ -355,9 +355,6 @@ def _crossed(
 
     The levels of a side follow each other, the sides follow each other.
     """
-    from scipy.optimize import elementwise
-
-    find_root: Foreign = elementwise.find_root
     known = values[of_side] - levels[level, np.newaxis]
 
     def above(share: Array, row: Indices) -> Array:
@@ -367,13 +364,45 @@ def _crossed(
         # The lowest luminance is that of all places without light, which are below their contour.
         return np.where(found > 0, found, np.minimum(found, -TINY))
 
-    bracket = np.zeros(len(level)), np.ones(len(level))
-    tolerances = {"xatol": WIDTH, "xrtol": 0.0}
-    row = np.arange(len(level))
-    share = find_root(above, bracket, args=(row,), tolerances=tolerances).x
+    share = _roots(above, len(level))
     # Where the luminance is not monotone the levels stay in order.
     rising = (values[:, 0] < values[:, 1])[of_side]
     return np.asarray(share[np.lexsort((np.where(rising, share, -share), of_side))])
+
+
+def _roots(above: Callable[[Array, Indices], Array], count: int) -> Array:
+    """Return where functions change their sign from 0 to 1, by Chandrupatla's method.
+
+    SciPy has it since 1.15. The method takes inverse quadratic interpolation where it is safe, else
+    it halves the bracket.
+    """
+    roots, which = np.empty(count), np.arange(count)
+    # The last place, the other end of the bracket, and later the place before; with their values.
+    x1: Array = np.zeros(count)
+    x2: Array = np.ones(count)
+    t: Array = np.full(count, 0.5)
+    f1, f2 = above(x1, which), above(x2, which)
+    while len(which):
+        x = x1 + t * (x2 - x1)
+        f = above(x, which)
+        # The new place replaces the end of the bracket whose value has the same sign.
+        same = (f > 0) == (f1 > 0)
+        x3, f3 = np.where(same, x1, x2), np.where(same, f1, f2)
+        x2, f2 = np.where(same, x2, x1), np.where(same, f2, f1)
+        x1, f1 = x, f
+        width = np.abs(x2 - x1)
+        done = width <= WIDTH
+        roots[which[done]] = np.where(np.abs(f1) <= np.abs(f2), x1, x2)[done]
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+            is_safe = (phi * phi < xi) & ((1 - phi) ** 2 < 1 - xi)
+            ahead = f1 / (f2 - f1) * f3 / (f2 - f3)
+            ahead += (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
+            least = 0.5 * WIDTH / width
+            t = np.where(is_safe, np.clip(ahead, least, 1 - least), 0.5)
+        which = which[~done]
+        x1, x2, f1, f2, t = (rows[~done] for rows in (x1, x2, f1, f2, t))
+    return roots
 
 
 def _walk(

@@ -652,7 +652,10 @@ def _dated(mesh: pv.DataSet, methods: str) -> str:
         date = date[: len("2000-01")]
     if not date and len(series.of(mesh)) > 1:
         unit = said.time.partition(", ")[0].partition(" since ")[0]
-        date = f"t = {times[0]:g} {meaning.written(unit)}".rstrip()
+        # One month is a name, many are a time.
+        named = unit in ("year", "month", "day", "hour")
+        text = f"{unit} {times[0]:g}" if named else f"t = {times[0]:g} {meaning.written(unit)}"
+        date = text.rstrip()
     method = OVER_TIME.search(methods)
     if not date or method is None:
         return date
@@ -682,7 +685,7 @@ def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:
 
 def times_as_high(factor: float) -> str:
     """Return the words in a title that say the factor of heights."""
-    return "" if factor == 1 else f"; heights times {factor:g}"
+    return "" if factor == 1 else f"; relief {factor:g} times as high"
 
 
 def titled_length(mesh: pv.DataSet, name: str) -> str:
