@@ -78,6 +78,8 @@ def test_what_is_no_box_is_refused():
         box_axes(3, camera, HEIGHT, size=SIZE)
     with pytest.raises(ValueError, match="height"):
         box_axes(pv.Box(), camera, 0, size=SIZE)
+    with pytest.raises(ValueError, match="names: expected three texts"):
+        box_axes(pv.Box(), camera, HEIGHT, size=SIZE, names=["x", "y"])
     lost = pv.PolyData(np.array([[0.0, 0, 0], [np.inf, 1, 1]]))
     with pytest.raises(ValueError, match="mesh"):
         box_axes(lost, camera, HEIGHT, size=SIZE)
@@ -128,3 +130,11 @@ def test_numbers_along_z_are_not_beside_those_of_another_axis():
     eye = module._Eye(camera, HEIGHT)
     names = {text: eye.seen(place) for text, place, _ in words if text in "xyz"}
     assert names["z"][0] > names["x"][0] > names["y"][0]
+
+
+def test_axes_have_the_names_that_are_given():
+    camera = camera_on(BOX, (1, 1, 1))
+    usual = box_axes(pv.Box(), camera, HEIGHT, size=SIZE)
+    named = box_axes(pv.Box(), camera, HEIGHT, size=SIZE, names=["x (mm)", "y", "z"])
+    # A parenthesis has no place in the usual names.
+    assert named.n_cells > usual.n_cells

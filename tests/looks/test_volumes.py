@@ -144,6 +144,11 @@ def test_a_scan_of_a_body_shows_bones_or_slices_but_no_skin():
     assert "bone" in str(bones)
     slices = vizlight.look(scan((99, -1000), (13, 40), (8, 900)), "value")
     assert (slices.shown, slices.drawing.keys[0]["cmap"]) == ("slices", "gray")
+    assert look.drawing.layers[-1].mesh.keywords.get("names") is None
+    measured = scan(*tissue, axes=meaning.ANATOMY)
+    measured.field_data["unit"] = ["millimetre"]
+    names = vizlight.look(measured).drawing.layers[-1].mesh.keywords["names"]
+    assert names == ["x (mm)", "y (mm)", "z (mm)"]
     # Slices end where the air begins.
     assert np.linalg.norm(look.mesh.points, axis=1).max() < 14.5
 

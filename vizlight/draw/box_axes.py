@@ -29,8 +29,16 @@ MOST = 5
 BAR, THICK = 0.4, 0.2
 
 
-def box_axes(mesh: pv.DataSet, camera: pv.Camera, /, height: float, *, size: float) -> pv.PolyData:
-    """Return ticks, numbers and names x, y, z along three edges of the box of a mesh.
+def box_axes(
+    mesh: pv.DataSet,
+    camera: pv.Camera,
+    /,
+    height: float,
+    *,
+    size: float,
+    names: Sequence[str] = ("x", "y", "z"),
+) -> pv.PolyData:
+    """Return ticks, numbers and names along three edges of the box of a mesh.
 
     The edges are those between a side that is seen and one that is not, so that nothing stands
     before or behind the data: the lower ones of x and y, and one of z beside the box.
@@ -45,6 +53,8 @@ def box_axes(mesh: pv.DataSet, camera: pv.Camera, /, height: float, *, size: flo
         Height of the part of the picture that shows the data, in pixels.
     size : float
         Height of letters in pixels.
+    names : sequence of str, default: ("x", "y", "z")
+        Names of the three axes, such as ``"x (mm)"``.
 
     Returns
     -------
@@ -54,12 +64,17 @@ def box_axes(mesh: pv.DataSet, camera: pv.Camera, /, height: float, *, size: flo
     Raises
     ------
     TypeError, ValueError
-        If the mesh has no finite box, the camera is none, or a height is not positive.
+        If the mesh has no finite box, the camera is none, a height is not positive, or the names
+        are not three texts.
     """
     box = _box_of(mesh)
+    every: object = names
+    if not isinstance(every, list | tuple) or len(every) != 3:
+        raise ValueError(_check.message("names", "three texts", _check.describe(names)))
+    names = [_check.text("names", name) for name in every]
     height, size = _check.positive("height", height), _check.positive("size", size)
     eye = _Eye(camera, height)
-    parts = [part for axis in range(3) for part in _along(box, axis, eye, size)]
+    parts = [part for axis in range(3) for part in _along(box, axis, names[axis], eye, size)]
     if not parts:
         return pv.PolyData()
     return blocks.polydata(*letters.union(parts))
@@ -219,7 +234,7 @@ class _Eye:
         return bool(toward @ normal > 0)
 
 
-def _along(box: Array, axis: int, eye: _Eye, size: float) -> list[tuple[Array, Indices]]:
+def _along(box: Array, axis: int, name: str, eye: _Eye, size: float) -> list[tuple[Array, Indices]]:
     """Return the ticks, numbers and the name along the best edge of an axis, in parts."""
     edge = _edge(box, axis, eye)
     if edge is None:
@@ -236,7 +251,7 @@ def _along(box: Array, axis: int, eye: _Eye, size: float) -> list[tuple[Array, I
         parts += [_tick(place, out, eye, size), _word(place, out, TICK + GAP, word, eye, size)]
         reach = max(reach, _extent(word, out))
     middle = edge.mean(axis=0)
-    parts.append(_word(middle, out, TICK + 3 * GAP + reach, "xyz"[axis], eye, size))
+    parts.append(_word(middle, out, TICK + 3 * GAP + reach, name, eye, size))
     return parts
 
 

@@ -206,9 +206,9 @@ class Wishes:
         return (self.make_scene or plain_scene)("none given", view, camera, n)
 
     def camera(
-        self, mesh: object, eye: Viewpoint, *, boxed: bool = False, keyed: bool = True
+        self, mesh: object, eye: Viewpoint, *, axes: Sequence[str] = (), keyed: bool = True
     ) -> Step:
-        """Return the step that sets the camera on a mesh, with room for numbers and for a key."""
+        """Return the step that sets the camera on a mesh, with room for axes and for a key."""
         up, zoom = self.eye.get("up"), self.eye.get("zoom", 1.0)
         fixed = self.frame or self.fixed_camera()
         if fixed is not None:
@@ -229,16 +229,18 @@ class Wishes:
         width, height = self.room if keyed else self._room(0.0)
         aspect = round(width / height, 4)
         step = Step("camera", "render.camera_on", mesh, toward, **keywords, aspect=aspect)
-        if boxed:
-            both = Step("", "pyvista.MultiBlock", [mesh, self.box_axes(mesh, step)])
+        if axes:
+            both = Step("", "pyvista.MultiBlock", [mesh, self.box_axes(mesh, step, axes)])
             step = Step("camera", "render.camera_on", both, toward, **keywords, aspect=aspect)
         step.note = eye.words if self.view is None else ""
         return step
 
-    def box_axes(self, box: object, camera: Step) -> Step:
-        """Return the step that makes the numbers along the edges of a box."""
-        size = round(SMALL * LETTERS * min(self.size), 1)
-        return Step("axes", "render.box_axes", box, camera, round(self.room[1], 1), size=size)
+    def box_axes(self, box: object, camera: Step, names: Sequence[str]) -> Step:
+        """Return the step that makes the numbers along the edges of a box, and names of axes."""
+        words: Keywords = {"size": round(SMALL * LETTERS * min(self.size), 1)}
+        if list(names) != ["x", "y", "z"]:
+            words["names"] = list(names)
+        return Step("axes", "render.box_axes", box, camera, round(self.room[1], 1), **words)
 
     @property
     def room(self) -> tuple[float, float]:

@@ -304,7 +304,7 @@ class Case:
         edges = Step("", "render.box_edges", box, camera)
         layers = [Layer(edges, BOX_EDGES | BESIDE, live=False)]
         if self.wishes.frame is None:
-            layers.append(self.words(self.wishes.box_axes(box, camera)))
+            layers.append(self.words(self.wishes.box_axes(box, camera, self.axes)))
         return layers
 
     def words(self, letters: Step) -> Layer:
@@ -412,7 +412,15 @@ class Case:
             mesh = map_parts.ball()
         elif self.box is not None:
             mesh, boxed = self.box, True
-        return self.wishes.camera(mesh, eye, boxed=boxed, keyed=not self.in_room)
+        axes = self.axes if boxed else ()
+        return self.wishes.camera(mesh, eye, axes=axes, keyed=not self.in_room)
+
+    @cached_property
+    def axes(self) -> Sequence[str]:
+        """Names of the axes, with their unit where it is one of lengths."""
+        unit = georeference.unit_of(self.data.run())
+        words = f" ({meaning.written(unit)})" if meaning.metres(unit) else ""
+        return [f"{letter}{words}" for letter in "xyz"]
 
     def scene(self, camera: Step) -> Step:
         """Return the step that makes the scene of the question."""

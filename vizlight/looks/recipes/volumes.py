@@ -205,7 +205,10 @@ def _framed(case: Case, mesh: Step, *, boxed: bool) -> tuple[Case, Step | None]:
     around = max(contents.sides) > LEAST_OF_BOX * max(case.contents.sides)
     if around and wishes.view is None and wishes.frame is None:
         eye = eye_around(mesh.run())
-        wishes = replace(wishes, frame=wishes.camera(box if boxed else mesh, eye, boxed=boxed))
+        wishes = replace(
+            wishes,
+            frame=wishes.camera(box if boxed else mesh, eye, axes=case.axes if boxed else ()),
+        )
     case = replace(case, data=mesh, contents=contents, wishes=wishes)
     return case, box if boxed and around else None
 
