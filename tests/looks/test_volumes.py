@@ -146,6 +146,9 @@ def test_a_scan_of_a_body_shows_bones_or_slices_but_no_skin():
     assert (slices.shown, slices.drawing.keys[0]["cmap"]) == ("slices", "gray")
     assert look.drawing.layers[-1].mesh.keywords.get("names") is None
     measured = scan(*tissue, axes=meaning.ANATOMY)
+    # Scans that are resampled have values a little below 0.
+    measured["NIFTI"][::97] = -9
+    assert vizlight.look(measured).drawing.keys[0]["cmap"] == "gray"
     measured.field_data["unit"] = ["millimetre"]
     names = vizlight.look(measured).drawing.layers[-1].mesh.keywords["names"]
     assert names == ["x (mm)", "y (mm)", "z (mm)"]

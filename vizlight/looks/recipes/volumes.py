@@ -36,6 +36,8 @@ VOXELS, MOST_CLOSED = 30, 0.4
 #: Numbers of air and bone in computed tomography, in Hounsfield units, and how near to that of air
 #: others are its own; least share of air, and shares of bone, of such a scan.
 AIR, BONE, NEAR_AIR, MUCH_AIR, BONES = -1000.0, 300.0, 50.0, 0.05, (0.002, 0.3)
+#: Largest share of the brightest value by which those of a scan that is resampled are below 0.
+RINGING = 0.1
 #: Share of a scan that has its lowest value from which on an organ was cut out of it, and the
 #: number of values that are looked at.
 CUT_OUT, SAMPLE = 0.5, 100_000
@@ -256,7 +258,8 @@ def slices(case: Case, why: str = "") -> Drawing:
     array = case.needed_array
     values = _sample(case, array)
     # As radiologists print them.
-    is_gray = bool(_is_air(values).any()) if np.any(values < 0) else case.is_of_body
+    is_signed = values.min() < -RINGING * values.max()
+    is_gray = bool(_is_air(values).any()) if is_signed else case.is_of_body
     body = case.data
     if is_gray and isinstance(body.run(), pv.ImageData) and not array.of_cells:
         body = Step("body", "files.without_air", body, array.name)
