@@ -410,14 +410,16 @@ def test_texts_at_the_places_of_a_grid_are_no_hindrance(tmp_path):
 def test_an_only_array_without_a_name_on_a_fine_map_is_of_the_ground(
     name, attributes, scale, step, unit
 ):
-    rows = scale * np.linspace(0, 1, 20).reshape(4, 5)
+    rows = scale * np.linspace(0, 1, 40).reshape(5, 8)
+    rows[1, :3] = -32768
     coords = {
-        "lat": ("lat", 40 + step * np.arange(4), {"units": "degrees_north"}),
-        "lon": ("lon", 10 + step * np.arange(5), {"units": "degrees_east"}),
+        "lat": ("lat", 40 + step * np.arange(5), {"units": "degrees_north"}),
+        "lon": ("lon", 10 + step * np.arange(8), {"units": "degrees_east"}),
     }
-    mesh = grid({name: (("lat", "lon"), rows, attributes)}, coords)
+    mesh = grid({name: (("lat", "lon"), rows, attributes)}, coords, nodata=-32768)
     assert ("taken for heights" in meaning.line(mesh)) == bool(unit)
     if unit:
+        rows[1, :3] = np.nan
         np.testing.assert_allclose(mesh[name], rows.ravel() * (0.3048 if unit == "ft" else 1))
         assert meaning.of(mesh).arrays[name] == {"long_name": "elevation", "units": "m"}
 

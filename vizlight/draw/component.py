@@ -113,7 +113,7 @@ class Component:
         halo : bool, float or str, optional
             Band of the colour of the ground on each side of lines, which tells the line in front
             where two cross: its width in widths of the line, or False for none. A colour, such as
-            ``"black"``, draws a narrower one in it, 0.45 widths and at least 1.2 pixels: an outline
+            ``"black"``, draws a narrower one in it, 0.35 widths and at least 0.9 pixels: an outline
             for dense lines, which bands of the ground's colour would cut to pieces. A band is the
             deeper the farther it is from its line, up to 4 widths of the line, so that lines that
             run together have no gap. On a light ground the rim of lines that are nearly as light is

@@ -36,7 +36,7 @@ AT_END = 1.75
 #: Width of a halo on each side in widths of the line, and its least width in pixels.
 WIDTHS, PIXELS = 1.0, 2.0
 #: The same of one in a colour, an outline.
-OUTLINE_WIDTHS, OUTLINE_PIXELS = 0.3, 0.7
+OUTLINE_WIDTHS, OUTLINE_PIXELS = 0.35, 0.9
 #: Depth of the border of a halo behind its line, in widths of the line: lines farther apart than
 #: that have a gap of the whole width of the halo.
 DEPTH = 4.0

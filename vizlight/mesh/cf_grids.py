@@ -161,10 +161,10 @@ class _Axis:
     scale: meaning.AxisScale
 
 
-def _may_be_ground(name: str, values: Foreign, axes: Sequence[_Axis]) -> bool:
+def _may_be_ground(name: str, attributes: Mapping[str, str], axes: Sequence[_Axis]) -> bool:
     """Return whether values on a fine map in degrees have a name that says nothing."""
-    words = {"units", "standard_name"} & values.attrs.keys()
-    text = str(values.attrs.get("long_name", ""))
+    words = {"units", "standard_name"} & attributes.keys()
+    text = str(attributes.get("long_name", ""))
     is_fine = all(
         axis.kind == "degrees" and np.ptp(axis.ticks) < FINE * (len(axis.ticks) - 1)
         for axis in axes
@@ -500,13 +500,13 @@ class _Reader:
                 if values is None:
                     continue
                 averaged.append(name)
-            attributes = self._attributes(name, values, axes, alone=len(fields) == 1)
-            self.said.add_array(name, attributes)
             # By NumPy, since texts among the coordinates of a variable cannot be transposed.
             order = [values.dims.index(dim) for dim in reversed(dims)]
             rows = np.transpose(values.values, order)
-            rows, missing = fills.without_missing(name, _within(rows, attributes), self.nodata)
+            rows, missing = fills.without_missing(name, _within(rows, values.attrs), self.nodata)
             words += [missing] if missing else []
+            attributes = self._attributes(name, values.attrs, rows, axes, alone=len(fields) == 1)
+            self.said.add_array(name, attributes)
             rows = self._heights(name, rows, attributes, flat=len(dims) == 2)
             for i, axis in enumerate(axes):
                 rows = np.take(rows, axis.order, axis=rows.ndim - 1 - i)
@@ -1037,16 +1037,14 @@ class _Reader:
         return axis
 
     def _attributes(
-        self, name: str, values: Foreign, axes: Sequence[_Axis], *, alone: bool
+        self, name: str, said: dict[str, str], rows: Raw, axes: Sequence[_Axis], *, alone: bool
     ) -> dict[str, str]:
-        """Return the attributes of values; of those without any that can be heights, these words.
+        """Return the attributes of an array; of one without any that can be heights, their words.
 
-        Only those that are alone on a fine map are taken for the ground.
+        Only one that is alone on a fine map is taken for the ground.
         """
-        said: dict[str, str] = values.attrs
-        if not alone or not _may_be_ground(name, values, axes):
+        if not alone or not _may_be_ground(name, said, axes):
             return said
-        rows = values.values
         low, high = float(np.nanmin(rows)), float(np.nanmax(rows))
         unit = "m" if high < georeference.HIGHEST else "ft"
         scale = meaning.metres(unit) or 1.0
