@@ -416,7 +416,8 @@ def test_an_only_array_without_a_name_on_a_fine_map_is_of_the_ground(
         "lat": ("lat", 40 + step * np.arange(5), {"units": "degrees_north"}),
         "lon": ("lon", 10 + step * np.arange(8), {"units": "degrees_east"}),
     }
-    mesh = grid({name: (("lat", "lon"), rows, attributes)}, coords, nodata=-32768)
+    with pytest.warns(UserWarning, match="are -32768, far from all other values"):
+        mesh = grid({name: (("lat", "lon"), rows, attributes)}, coords)
     assert ("taken for heights" in meaning.line(mesh)) == bool(unit)
     if unit:
         rows[1, :3] = np.nan
