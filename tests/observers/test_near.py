@@ -377,6 +377,20 @@ def test_tangents_of_solid_cells_are_means_of_those_inside_too(name):
         samples.part_on(mesh, SCENE, LightOptions(tangents="W"), "block 2")
 
 
+@pytest.mark.parametrize("marks", [[1, 8], [1, 2, 8, 32, 33], [32] * 40])
+def test_means_at_points_of_a_structured_grid_leave_blank_cells_out(marks, monkeypatch):
+    mesh = with_vectors(pv.ImageData(dimensions=(6, 5, 7)).cast_to_structured_grid())
+    random = np.random.default_rng(2)
+    mesh.cell_data["vtkGhostType"] = random.choice([0] * 20 + marks, mesh.n_cells).astype(np.uint8)
+    points, expected = np.arange(3, mesh.n_points), tangents_of(mesh, "W", 3)[3:]
+    for block in (near_cells.BLOCK, 40):
+        monkeypatch.setattr(near_cells, "BLOCK", block)
+        parts = list(near_cells.stars(mesh, points, LightOptions(tangents="W")))
+        assert max(part.n_cells for part, _ in parts) < block + 8
+        tangents = np.concatenate([tangents_of(part, own.tangents, 3) for part, own in parts])
+        np.testing.assert_allclose(np.abs(tangents), np.abs(expected), atol=1e-9)
+
+
 @pytest.mark.parametrize("name", ["W", "u,v,w"])
 @pytest.mark.parametrize("block", [20, 1 << 16])
 def test_tangents_of_the_cells_of_lines_and_points_are_those_of_the_whole(name, block, monkeypatch):

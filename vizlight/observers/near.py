@@ -14,15 +14,15 @@ from vizlight.draw.sources import with_sharp_edges
 from vizlight.mesh.blocks import cell_array
 from vizlight.observers.pixels import rows_of
 from vizlight.vtk.arrays import array_of, points_of
-from vizlight.vtk.cells import finite_points, places, triangles
+from vizlight.vtk.cells import BLANK, GHOSTS, HIDDEN, finite_points, places, triangles
 from vizlight.vtk.corners import all_slivers, joined
 from vizlight.vtk.drawn import BLOCK, DrawnCells, DrawnTriangles
 from vizlight.vtk.normals import NEIGHBOURS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
-    from vizlight._types import Array, Indices, Keywords
+    from vizlight._types import Array, Bools, Indices, Keywords
     from vizlight.shading.inputs import ArraySource
     from vizlight.shading.options import LightOptions
     from vizlight.vtk.drawn import DrawnSegments
@@ -166,22 +166,58 @@ def around_points(mesh: pv.DataSet, corners: Indices, light: LightOptions) -> Ne
         How the mesh is lit, by names of arrays of its cells.
     """
     origin, at = np.unique(corners, return_inverse=True)
-    part = pv.PolyData()
-    part.points = rows_of(points_of(mesh, None), origin)
-    ids, sizes, cells = ([np.zeros(0, np.intp)] for _ in range(3))
+    part, own = _star(mesh, light, origin, *_pairs(mesh, origin))
+    return Near(part, own, at.reshape(corners.shape), origin)
+
+
+def stars(
+    mesh: pv.DataSet, points: Indices, light: LightOptions
+) -> Iterator[tuple[pv.PolyData, LightOptions]]:  # fmt: skip
+    """Yield rising points of a mesh as :func:`around_points` has them, some of them at a time."""
+    place, cells = _pairs(mesh, points)
+    order = np.argsort(place, kind="stable")
+    count = np.bincount(place, minlength=len(points))
+    ends = np.concatenate([[0], np.cumsum(count)])
+    for rows in np.split(np.arange(len(points)), _steps(count)):
+        first, last = rows[0], rows[-1] + 1
+        some = order[ends[first] : ends[last]]
+        yield _star(mesh, light, points[rows], place[some] - first, cells[some])
+
+
+def _pairs(mesh: pv.DataSet, points: Indices) -> tuple[Indices, Indices]:
+    """Return which of some rising points of a mesh are corners, and the cell of each corner."""
+    number = np.int32 if max(mesh.n_points, mesh.n_cells) < 2**31 else np.intp
+    every_place, cells = [np.zeros(0, number)], [np.zeros(0, number)]
     for kind in DrawnCells.all_of(mesh):
-        around = kind.around(origin)
+        around = kind.around(points)
+        around = around[~_blank(mesh, kind.cells_of(around))]
         # Lines may have many points.
         for some in np.split(around, _steps(kind.sizes(around))):
             every, ends = kind.corners(some)
-            place = np.minimum(np.searchsorted(origin, every), len(origin) - 1)
-            chosen = origin[place] == every
-            ids.append(place[chosen])
-            sizes.append(np.diff(np.append(0, np.cumsum(chosen))[ends]))
-        cells.append(kind.cells_of(around))
-    part.SetLines(cell_array(np.concatenate(ids), np.cumsum(np.concatenate([[0], *sizes]))))
-    own = _with_rows(part, mesh, light, origin, np.concatenate(cells))
-    return Near(part, own, at.reshape(corners.shape), origin)
+            place = np.minimum(np.searchsorted(points, every), len(points) - 1)
+            chosen = points[place] == every
+            every_place.append(place[chosen].astype(number))
+            cells.append(np.repeat(kind.cells_of(some), np.diff(ends))[chosen].astype(number))
+    return np.concatenate(every_place), np.concatenate(cells)
+
+
+def _star(
+    mesh: pv.DataSet, light: LightOptions, origin: Indices, place: Indices, cells: Indices
+) -> tuple[pv.PolyData, LightOptions]:  # fmt: skip
+    """Return points of a mesh with a cell of one point for each corner there, and their light."""
+    part = pv.PolyData()
+    part.points = rows_of(points_of(mesh, None), origin)
+    part.SetVerts(cell_array(place, np.arange(len(place) + 1)))
+    return part, _with_rows(part, mesh, light, origin, cells)
+
+
+def _blank(mesh: pv.DataSet, cells: Indices) -> Bools:
+    """Return which cells of a mesh VTK's means leave out."""
+    marks = mesh.cell_data.get(GHOSTS) if isinstance(mesh, pv.StructuredGrid) else None
+    # Beside blank cells alone, those that finer ones replace are left out too.
+    if marks is None or not np.bitwise_or.reduce(marks) & BLANK:
+        return np.zeros(len(cells), dtype=np.bool_)
+    return np.asarray(marks[cells] & HIDDEN > 0)
 
 
 def neighbours(points: ArraySource, ids: Indices, count: int) -> Indices:

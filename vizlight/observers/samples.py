@@ -17,7 +17,7 @@ from vizlight.filters.lighting import part_of
 from vizlight.mesh import subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import length_rows, unit_rows
-from vizlight.observers.near import around_points, near, near_points, tangents_at
+from vizlight.observers.near import around_points, near, near_points, stars, tangents_at
 from vizlight.observers.pixels import Cells, rows_of, toward_eye
 from vizlight.scene import Scene, View
 from vizlight.scene.view import as_view, is_camera
@@ -34,7 +34,6 @@ from vizlight.vtk.arrays import (
     tangents_of,
     without_sign,
 )
-from vizlight.vtk.cells import GHOSTS
 from vizlight.vtk.drawn import DrawnCells, DrawnPoints, DrawnSegments, DrawnTriangles
 from vizlight.vtk.hull import SOLID
 from vizlight.vtk.normals import is_scan
@@ -518,13 +517,14 @@ def _with_means(
     options: LightOptions, mesh: pv.DataSet, origin: Indices, path: str, scene: Scene
 ) -> LightOptions:
     """Return options with tangents that are means of all cells around, inside and hidden too."""
-    light, rows = LightOptions(tangents=options.tangents, line_field=options.line_field), origin
-    # VTK's means leave hidden cells of such a grid out.
-    if not isinstance(mesh, pv.StructuredGrid) or GHOSTS not in mesh.cell_data:
-        mesh, light, rows, _ = around_points(mesh, origin, light)
-    inputs = part_of(mesh, path, scene, light).inputs
-    assert inputs.tangents is not None
-    tangents = inputs.tangents[:][rows]
+    light = LightOptions(tangents=options.tangents, line_field=options.line_field)
+    points, place = np.unique(origin, return_inverse=True)
+    rows: list[Array] = []
+    for part, own in stars(mesh, points, light):
+        inputs = part_of(part, path, scene, own).inputs
+        assert inputs.tangents is not None
+        rows.append(inputs.tangents[:])
+    tangents = np.concatenate(rows)[place]
     return dataclasses.replace(options, tangents=tangents, line_field=inputs.line_field)
 
 

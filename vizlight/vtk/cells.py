@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 GHOSTS = "vtkGhostType"
 #: Marks of cells that are of another piece, and of those that are refined or hidden; mark of a
 #: hidden point.
-DUPLICATE, HIDDEN, HIDDEN_POINT = 1, 8 | 32, 2
+DUPLICATE, BLANK, HIDDEN, HIDDEN_POINT = 1, 32, 8 | 32, 2
 #: Methods of the classes: on a mesh of PyVista the look-up of one takes longer than the call.
 point_data: Callable[[Foreign], vtkPointData] = vtkDataSet.GetPointData
 cell_data: Callable[[Foreign], vtkCellData] = vtkDataSet.GetCellData
