@@ -240,6 +240,23 @@ def test_many_solid_cells_are_split_on_their_surface_with_the_colours_of_their_c
     )
 
 
+def test_many_solid_cells_with_conditioned_vectors_are_split_as_their_surface_is(monkeypatch):
+    light = LightOptions(tangents="W", conditioned=True, feature_angle="auto")
+    cube = with_vectors(pv.ImageData(dimensions=(4, 5, 6)).cast_to_unstructured_grid())
+    ball = with_vectors(pv.SolidSphere(theta_resolution=30, phi_resolution=30, radius_resolution=3))
+    whole = [legibility._split(mesh, light) for mesh in (cube, ball)]
+    monkeypatch.setattr(legibility, "WHOLE", 0)
+    split, same = (legibility._split(mesh, light) for mesh in (cube, ball))
+    # Of a ball no point is split, and the means are those of the cells inside too.
+    assert same is whole[1] is ball
+    assert split.n_points == whole[0].n_points > 120 - 2 * 3 * 4
+    rows, expected = (
+        np.column_stack([mesh.points, tangents_of(mesh, "W", 3)]) for mesh in (split, whole[0])
+    )
+    order, other = (np.lexsort(np.round(x, 6).T) for x in (rows, expected))
+    np.testing.assert_allclose(rows[order], expected[other], atol=1e-9)
+
+
 @pytest.mark.parametrize("whole", [0, samples.WHOLE])
 def test_colours_of_cells_go_with_their_faces_and_lines(whole, monkeypatch):
     monkeypatch.setattr(samples, "WHOLE", whole)
@@ -369,9 +386,12 @@ def test_tangents_of_solid_cells_are_means_of_those_inside_too(name):
         expected = tangents_of(mesh, name, 3)[part.values.astype(int)]
         np.testing.assert_allclose(part.inputs.tangents[:], expected, atol=1e-12)
         assert part.inputs.line_field == (name == "W")
-        # Where points are split at creases, which is so of conditioned tangents, the faces count.
         conditioned = LightOptions(tangents=name, conditioned=True)
-        assert samples.part_on(mesh, SCENE, conditioned).mesh is mesh
+        same = samples.part_on(mesh, SCENE, conditioned)
+        for rows in ("points", "tangents", "normals"):
+            np.testing.assert_array_equal(
+                getattr(same.inputs, rows)[:], getattr(part.inputs, rows)[:]
+            )
     mesh.cell_data["W"] = np.ones((mesh.n_cells, 4))
     with pytest.raises(ValueError, match="block 2: tangents: expected a point array of 3"):
         samples.part_on(mesh, SCENE, LightOptions(tangents="W"), "block 2")

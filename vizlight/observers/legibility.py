@@ -35,6 +35,7 @@ from vizlight.scene.view import is_camera
 from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import is_of_cells
 from vizlight.vtk.hull import outer_faces
+from vizlight.vtk.parts import uses_normals
 from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
@@ -283,9 +284,17 @@ def _split(mesh: pv.DataSet, options: LightOptions) -> pv.DataSet:
     """Return a mesh with split sharp edges unless it is large; of many solid cells the surface."""
     by_name = all(isinstance(x, str | None) for x in (options.tangents, options.normals))
     many = isinstance(mesh, pv.UnstructuredGrid) and mesh.n_cells > WHOLE
-    if many and by_name and is_solid(mesh, options) and not are_of_cells(mesh, options):
-        mesh = pv.wrap(outer_faces(mesh)[0])
-    return mesh if is_large(mesh) else with_sharp_edges(mesh, options)
+    if not (many and by_name and is_solid(mesh)):
+        return mesh if is_large(mesh) else with_sharp_edges(mesh, options)
+    of_cells = are_of_cells(mesh, options)
+    if of_cells and not uses_normals(mesh, options):
+        return mesh
+    surface = pv.wrap(outer_faces(mesh)[0])
+    if is_large(surface) and not of_cells:
+        return surface
+    # Means of cells at points that are split are those of the faces around, at others of all cells.
+    split = with_sharp_edges(surface, options)
+    return mesh if of_cells and split is surface else split
 
 
 def _parts(

@@ -361,12 +361,9 @@ def is_large(mesh: pv.DataSet) -> bool:
     return large and DrawnTriangles.of(mesh) is not None
 
 
-def is_solid(mesh: pv.DataSet, light: LightOptions) -> bool:
+def is_solid(mesh: pv.DataSet) -> bool:
     """Return whether the outer surface of cells that fill space has all that a picture shows."""
     if isinstance(mesh, pv.PolyData) or hull.dimension(mesh) != SOLID:
-        return False
-    # Points that are split at sharp edges have the means of the faces around.
-    if light.conditioned and are_of_cells(mesh, light):
         return False
     return not hull.is_curved(mesh) and GLYPH not in mesh.point_data
 
@@ -449,7 +446,7 @@ def part_on(
     options, is_glyphs = of_glyphs(mesh, options), GLYPH in mesh.point_data
     if is_glyphs:
         more["lit"] = False
-    elif is_solid(mesh, options):
+    elif is_solid(mesh):
         mesh, options, values = _on_surface(mesh, path, scene, options, values, flat=flat)
     if matrix is not None and np.array_equal(matrix, np.eye(4)):
         matrix = None
