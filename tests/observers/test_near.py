@@ -440,9 +440,28 @@ def test_tangents_of_the_cells_of_lines_and_points_are_those_of_the_whole(name, 
                 np.testing.assert_array_equal(ahead, whole.ahead(chosen))
                 # Means of cells have no sign, and those of components have.
                 assert ahead.any() == (name != "W")
-    conditioned = LightOptions(tangents=name, conditioned="n")
     lines["n"] = np.asarray(lines.points)
-    assert samples.part_on(lines, SCENE, conditioned).inputs.tangents is not None
+    for how in ({"conditioned": True, "normals": "n"}, {"conditioned": "n"}):
+        parts = []
+        for size in (1 << 17, 0):
+            monkeypatch.setattr(samples, "WHOLE", size)
+            part = samples.part_on(lines, SCENE, LightOptions(tangents=name, **how))
+            assert (part.inputs.tangents is None) == (size == 0)
+            parts.append(part.near(chosen))
+        for rows in ("tangents", "normals" if "normals" in how else "base_tangents"):
+            found, same = (getattr(p.inputs, rows)[:][p.cells] for p in parts)
+            np.testing.assert_allclose(found, same, atol=1e-6)
+    with pytest.raises(ValueError, match="without faces"):
+        samples.part_on(lines, SCENE, LightOptions(tangents=name, conditioned=True))
+
+
+def test_curved_faces_with_vectors_of_cells_have_their_normals(monkeypatch):
+    monkeypatch.setattr(samples, "WHOLE", 0)
+    mesh = with_vectors(pv.examples.cells.QuadraticTriangle())
+    part = samples.part_on(mesh, SCENE, LightOptions(tangents="W")).near(np.arange(4))
+    assert part.inputs.normals[:].any(axis=1).all()
+    flat = samples.part_on(mesh, SCENE, LightOptions(tangents="W"), lit=False)
+    assert flat.inputs.tangents is None
 
 
 @pytest.mark.parametrize("name", ["W", "u,v,w"])

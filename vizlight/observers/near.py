@@ -263,7 +263,7 @@ def _with_rows(
 ) -> LightOptions:
     """Give a part of a mesh the rows of the arrays of its light; return the options for it."""
     given: Keywords = {}
-    names = {light.positions or ""}
+    names = {light.positions or "", *(x for x in [light.conditioned] if isinstance(x, str))}
     for name in ("tangents", "normals"):
         value = getattr(light, name)
         if isinstance(value, str):

@@ -34,7 +34,7 @@ from vizlight.vtk.arrays import (
     tangents_of,
     without_sign,
 )
-from vizlight.vtk.drawn import DrawnCells, DrawnPoints, DrawnSegments, DrawnTriangles
+from vizlight.vtk.drawn import TRIANGLE, DrawnCells, DrawnPoints, DrawnSegments, DrawnTriangles
 from vizlight.vtk.hull import SOLID
 from vizlight.vtk.normals import is_scan
 
@@ -382,13 +382,15 @@ def _made_near(
         return is_large(mesh)
     if mesh.n_points <= WHOLE or light.positions is not None:
         return False
+    given = light.normals is not None or mesh.point_data.active_normals_name is not None
     if light.tangents is not None:
-        return are_of_cells(mesh, light) and not light.conditioned
+        # Normals of faces, such as of curved cells, are not those of points alone.
+        needs_faces = lit if cells.shape[1] == TRIANGLE else light.conditioned is True and not given
+        return are_of_cells(mesh, light) and not needs_faces
     if isinstance(cells, DrawnSegments):
         # Which of several lines a segment is a part of is known of segments alone.
         apart = cells.are_single or not cells.may_join
         return apart and not light.conditioned and subdivision.kept_tangents(mesh) is None
-    given = light.normals is not None or mesh.point_data.active_normals_name is not None
     return lit and not given and is_scan(mesh)
 
 
