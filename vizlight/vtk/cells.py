@@ -234,6 +234,11 @@ def bare_faces(surface: vtkPolyData, kept: Bools | None = None) -> vtkPolyData:
 
 def first_twins(cells: vtkCellArray) -> Indices | None:
     """Return the first cell of the same points as each cell, None if they all differ."""
+    return firsts(mixed_corners(cells))
+
+
+def mixed_corners(cells: vtkCellArray) -> NDArray[np.uint64]:
+    """Return a number of each cell that those of the same points have in common."""
     ids, offsets = connectivity(cells)
     number = np.zeros(max(len(offsets) - 1, 0), dtype=np.uint64)
     with np.errstate(over="ignore"):
@@ -245,7 +250,7 @@ def first_twins(cells: vtkCellArray) -> Indices | None:
             # Sums wrap around at 2^64, which their differences undo.
             sums = np.concatenate([[np.uint64(0)], np.cumsum(corners, dtype=np.uint64)])
             number[block] = np.diff(sums[ends - ends[0]])
-    return firsts(number)
+    return number
 
 
 def firsts(numbers: NDArray[np.uint64]) -> Indices | None:

@@ -40,9 +40,9 @@ from vizlight.vtk.cells import (
     connectivity,
     dimensions,
     finite_faces,
-    first_twins,
     grid_cells,
     has_marks,
+    mixed_corners,
     places,
     point_data,
     types_of_cells,
@@ -415,14 +415,17 @@ def _part(
     own = np.arange(low, high) if high - low <= len(ids) else np.unique(ids)
 
     def cells(ids: Indices, ends: Indices, *, of_points: bool = True) -> vtkCellArray:
-        if of_points:
-            ids = ids - low if len(own) == high - low else np.searchsorted(own, ids)
+        if of_points and dense:
+            ids = np.subtract(ids, low, dtype=np.int32, casting="unsafe")
+        elif of_points:
+            ids = np.searchsorted(own, ids)
         array = vtkCellArray()
-        array.SetData(as_vtk(ends.astype(np.int32)), as_vtk(ids.astype(np.int32)))
+        array.SetData(*(as_vtk(each.astype(np.int32, copy=False)) for each in (ends, ids)))
         return array
 
     part, points, kinds = vtkUnstructuredGrid(), vtkPoints(), as_vtk(types)
-    points.SetData(as_vtk(places(grid)[own]))
+    dense = len(own) == high - low
+    points.SetData(as_vtk(places(grid)[low:high] if dense else places(grid)[own]))
     part.SetPoints(points)
     if _POLYHEDRON not in types:
         part.SetCells(kinds, cells(ids, ends))
@@ -444,9 +447,11 @@ def _are_twins(
         as_vtk(np.concatenate([[0], np.cumsum(sizes[some])])),
         as_vtk(corners[np.repeat(some, sizes)]),
     )
-    first, twins = first_twins(cells), np.zeros(len(sizes), dtype=np.bool_)
-    if first is not None:
-        twins[some] = np.bincount(first, minlength=len(first))[first] > 1
+    numbers, twins = mixed_corners(cells), np.zeros(len(sizes), dtype=np.bool_)
+    order, rows = np.argsort(numbers), np.flatnonzero(some)
+    ordered = numbers[order]
+    same = ordered[1:] == ordered[:-1]
+    twins[rows[order[1:][same]]] = twins[rows[order[:-1][same]]] = True
     return twins
 
 
