@@ -291,7 +291,7 @@ def check(
     Report
         Report to print, with the attributes ``points``, ``terms``, ``seconds``, ``bytes``,
         ``error``, ``between``, ``invalid``, ``runs``, one for each block that has light, and
-        ``skies``, the facts of each sky; figures that are not measured are NaN.
+        ``skies``, the facts of each sky and each bundle; figures that are not measured are NaN.
 
     Raises
     ------
