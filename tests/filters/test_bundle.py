@@ -14,6 +14,8 @@ from vizlight import _pool
 from vizlight.draw import live
 from vizlight.filters import relight
 from vizlight.geometry.lines import bundle as geometry
+from vizlight.geometry.lines import cylinders
+from vizlight.mesh import bundles
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
 
@@ -23,6 +25,7 @@ OFF = vizlight.Light(direction=(1, 0, 0), intensity=0.0)
 SCENE = vizlight.Scene(
     lights=[FAR, OFF, NEAR], view=vizlight.View(direction=(0, -1, 0.3)), material=SHINY
 )
+ABOVE = vizlight.Light(direction=(0.0, 0.6, 0.8))
 QUICK = vizlight.Bundle(grid=24)
 
 
@@ -103,6 +106,31 @@ def test_the_same_with_any_number_of_threads():
         two = vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky")
     assert np.array_equal(one["transmittance"], two["transmittance"])
     assert np.array_equal(one["sky"], two["sky"])
+
+
+def test_the_record_has_the_errors_of_each_light_and_a_check_prints_them(monkeypatch):
+    lit = vizlight.illuminate(lines(), SCENE, bundle=QUICK)
+    record = vizlight.provenance(lit)["bundle"]
+    assert all(0.02 < mean < error < 1 for mean, error in zip(*errors_of(record), strict=True))
+    text = f"error {max(record['error']):.2g} or less at 95 of 100 points, of the mean share"
+    assert text in str(vizlight.check(lit, sample=5))
+    measured = []
+
+    def counted(*values):
+        measured.append(values[3])
+        return cylinders.missed(*values)
+
+    monkeypatch.setattr(bundles, "missed", counted)
+    other = vizlight.illuminate(lit, SCENE.replace(lights=[NEAR, FAR, ABOVE]), bundle=QUICK)
+    assert measured == [ABOVE.direction]
+    again = vizlight.provenance(other)["bundle"]
+    for kept, first in zip(errors_of(again), errors_of(record), strict=True):
+        assert kept[:2] == first[::-1]
+    assert len(again["error"]) == 3
+
+
+def errors_of(record):
+    return record["mean_error"], record["error"]
 
 
 def in_one_light(mesh):

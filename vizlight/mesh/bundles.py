@@ -14,6 +14,7 @@ from vizlight import _check
 from vizlight._types import Array, Indices
 from vizlight.geometry.lines import bundle as geometry
 from vizlight.geometry.lines.bundle import Medium
+from vizlight.geometry.lines.cylinders import Missed, missed
 from vizlight.mesh import blocks, records
 from vizlight.scene import Light, Scene
 from vizlight.shading.inputs import ShadingInputs
@@ -36,7 +37,9 @@ class Dimming(NamedTuple):
     transmittance : ndarray of float32, shape (N, L)
         Share of each light of intensity above 0.
     record : dict
-        Diameter, side of a voxel, and digests of the sources of the shares.
+        Diameter, side of a voxel, and digests of the sources of the shares; for each light the
+        ``error`` that 95 of 100 points keep to, and the ``mean_error``, of the mean share of the
+        points, as estimated by rays.
     keys : list of str
         Position or direction of each light.
     """
@@ -100,7 +103,8 @@ def dim(
             # Grids of the meshes before, counted when the function is made, and of this one.
             progress(done + count, len(meshes) * len(lights))
 
-        dimmings.append(Dimmed(mesh, mesh_inputs, work, names).shares_of(lights, report))
+        own = Dimmed(mesh, mesh_inputs, work, names)
+        dimmings.append(own.with_errors(own.shares_of(lights, report), lights))
     return dimmings
 
 
@@ -212,7 +216,7 @@ class Dimmed:
         # None has no bytes for a digest; an empty array stands for it.
         arrays = (np.empty(0) if x is None else x for x in self._targets)
         self._source = f"{work.source} {records.source(*arrays)}"
-        self._known = _kept(mesh, names, self._source)
+        self._known = self._kept = _kept(mesh, names, self._source)
 
     def shares_of(
         self, lights: Sequence[Light], progress: Callable[[int], None] | None = None
@@ -241,6 +245,22 @@ class Dimmed:
             transmittance[:, i] = columns[key]
         self._known = Dimming(transmittance, facts | {"source": self._source, "lights": keys}, keys)
         return self._known
+
+    def with_errors(self, dimming: Dimming, lights: Sequence[Light]) -> Dimming:
+        """Return shares of lights with their errors in the record, kept ones where they are."""
+        known: dict[str, Missed] = {}
+        if self._kept is not None:
+            known = _errors(self._kept)
+        missing = [i for i, key in enumerate(dimming.keys) if key not in known]
+        if missing:
+            medium, diameter = self._work.medium
+            targets = medium.targets(*self._targets)
+            for i in missing:
+                left = dimming.transmittance[:, i]
+                known[dimming.keys[i]] = missed(medium, targets, diameter, *_place(lights[i]), left)
+        errors, means = ([known[key][k] for key in dimming.keys] for k in (0, 1))
+        record = dimming.record | {"error": errors, "mean_error": means}
+        return dimming._replace(record=record)
 
     def dimmed(self, inputs: ShadingInputs, scene: Scene) -> ShadingInputs:
         """Return inputs with the shares of the lights of a scene.
@@ -293,6 +313,15 @@ def _kept(mesh: pv.DataSet, names: tuple[str, str], source: str) -> Dimming | No
     # VTK has no arrays of one column: of a single light they are flat.
     shares = np.asarray(mesh.point_data[names[1]]).reshape(mesh.n_points, -1)
     return Dimming(shares, record, keys) if shares.shape[1] == len(keys) else None
+
+
+def _errors(dimming: Dimming) -> dict[str, Missed]:
+    """Return the errors of each light that the record of shares has."""
+    errors, means = (dimming.record.get(name) for name in ("error", "mean_error"))
+    if not (isinstance(errors, list) and isinstance(means, list)):
+        return {}
+    missed_by_light = map(Missed, errors, means)
+    return dict(zip(dimming.keys, missed_by_light, strict=False))
 
 
 def _lines_of(mesh: object) -> LineSet:

@@ -121,7 +121,7 @@ class Report:
     """Cost and error of the light of a mesh, one run for each block; see :func:`check`."""
 
     runs: tuple[Run, ...] = ()
-    #: What is known of each sky, in words.
+    #: What is known of each sky, and of the light inside each bundle, in words.
     skies: tuple[str, ...] = ()
 
     @property
@@ -291,7 +291,7 @@ def check(
     Report
         Report to print, with the attributes ``points``, ``terms``, ``seconds``, ``bytes``,
         ``error``, ``between``, ``invalid``, ``runs``, one for each block that has light, and
-        ``skies``, the facts of each sky; figures that are not measured are NaN.
+        ``skies``, the facts of each sky and each bundle; figures that are not measured are NaN.
 
     Raises
     ------
@@ -329,7 +329,7 @@ def check(
     if record["filter"] == "tint":
         # Colours were put on a light, which the mesh carries too.
         return check(lit, name=record["options"]["light"], sample=sample, seed=seed)
-    skies = dict.fromkeys(_skies(lit, name, record))
+    skies = dict.fromkeys([*_skies(lit, name, record), *_bundles(lit, name, record)])
     with warnings.catch_warnings():
         # They were given when the mesh was lit.
         warnings.simplefilter("ignore", UserWarning)
@@ -348,6 +348,18 @@ def _skies(lit: pv.DataSet | pv.MultiBlock, name: str, record: Keywords) -> Iter
         sky = records.read(block, used) or {}
         if sky.get("filter") == "sky":
             yield _of_sky(sky)
+
+
+def _bundles(lit: pv.DataSet | pv.MultiBlock, name: str, record: Keywords) -> Iterator[str]:
+    """Yield the errors of the light inside the bundles by which a mesh was lit, in words."""
+    for block in blocks.all_blocks(lit) if record["options"].get("bundle") else ():
+        facts = (records.read(block, name) or {}).get("bundle")
+        if isinstance(facts, dict) and facts.get("error"):
+            error, mean = max(facts["error"]), max(facts["mean_error"])
+            yield (
+                f"bundle at {block.n_points} points: error {error:.2g} or less at 95 of 100 points,"
+                f" of the mean share {mean:.2g} or less, as estimated, rays through cylinders"
+            )
 
 
 def _of_sky(record: Record) -> str:

@@ -82,6 +82,10 @@ class Bundle:
     Ends of lines are as right as their inner points, ends of lines that are no longer than 2
     diameters to 0.02.
 
+    The record of a lit mesh, ``vizlight.provenance(lit)["bundle"]``, has the ``error`` of each
+    light that 95 of 100 points keep to, and its ``mean_error``, of the mean share of the points.
+    Both are estimated by rays from at most 512 points through solid cylinders.
+
     Examples
     --------
     >>> import vizlight

@@ -373,6 +373,8 @@ class Medium:
         Centre of the lines.
     voxel : float
         Side of a voxel in the unit of the lines.
+    line : ndarray of int, shape (M,)
+        Number of the line of each piece.
     """
 
     middles: Array
@@ -380,6 +382,7 @@ class Medium:
     free: Array
     origin: Array
     voxel: float
+    line: Indices
 
     def targets(
         self, points: Array, vectors: Array | None = None, halves: Array | None = None, /
@@ -611,7 +614,9 @@ def medium(points: Array, connectivity: Indices, offsets: Indices, /, *, voxel: 
     middles, vectors = (
         np.take(rows.astype(np.float32), order, axis=1) for rows in (middles, vectors)
     )
-    return Medium(middles, vectors, ends_of[order].astype(np.float32), origin, voxel)
+    number = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+    line: Indices = np.repeat(number[first], parts)[order]
+    return Medium(middles, vectors, ends_of[order].astype(np.float32), origin, voxel, line)
 
 
 def _free_ends(connectivity: Indices, offsets: Indices) -> Bools:
