@@ -334,6 +334,18 @@ def test_a_part_with_most_points_on_its_surface_shows_values_there():
     assert vizlight.look(beam, size=SIZE).shown == "streamlines"
 
 
+def test_smooth_values_on_a_solid_have_isolines_at_the_numbers_of_their_bar():
+    solid = pv.ImageData(dimensions=(9, 9, 3), spacing=(1, 1, 2)).cast_to_unstructured_grid()
+    x, y, _ = np.asarray(solid.points).T
+    solid["T"] = 100 * (x + 0.3 * y)
+    look = vizlight.look(solid)
+    *_, isolines = look.drawing.layers
+    np.testing.assert_allclose(np.unique(isolines.mesh.run()["T"].round(6)), range(200, 1001, 200))
+    assert look.key[0]["title"].endswith("; lines every 200")
+    solid["T"] = np.random.default_rng(0).random(solid.n_points)
+    assert "lines" not in vizlight.look(solid).key[0]["title"]
+
+
 def test_a_plane_without_data_is_grey_with_its_edges(tmp_path):
     plane = pv.Plane(i_resolution=2, j_resolution=2)
     plane.clear_data()

@@ -406,23 +406,6 @@ def test_a_recipe_of_gmsh_is_no_mesh(tmp_path):
         vizlight.read(tmp_path / "t1.geo")
 
 
-def test_a_neuron_has_branches_radii_and_types(tmp_path):
-    path = tmp_path / "a.swc"
-    rows = ["# a comment", "1 1 0 0 0 5 -1", "2 3 1 0 0 1 1", "3 3 2 0 0 1 2", "5 2 0 1 0 2 1"]
-    path.write_text("\n".join(rows))
-    mesh = vizlight.read(path)
-    assert mesh.n_points == 4
-    assert [cell.point_ids for cell in mesh.cell] == [[0, 1, 2], [0, 3]]
-    assert mesh["radius"].tolist() == [5, 1, 1, 2]
-    assert mesh["type"].dtype == np.int32
-    path.write_text("\n".join([*rows[:4], "5 2 0 1 0 2 9"]))
-    with pytest.warns(UserWarning, match="1 points follow others that are not there"):
-        assert vizlight.read(path).n_points == 4
-    path.write_text("1 2 3\n")
-    with pytest.raises(files.FileError, match="3 columns, not the 7 of a neuron"):
-        vizlight.read(path)
-
-
 @pytest.mark.parametrize("name", ["a.las", "a.laz"])
 def test_points_of_a_lidar(tmp_path, name):
     laspy = pytest.importorskip("laspy")

@@ -30,6 +30,7 @@ from vizlight.mesh import (
     meaning,
     molecule_files,
     molecules,
+    neurons,
     ply,
     polylines,
     scene_files,
@@ -407,39 +408,6 @@ def _lidar(path: Path) -> pv.PolyData:
     return mesh
 
 
-def _neuron(path: Path) -> pv.PolyData:
-    """Return the branches of a neuron as polylines with the radius and the type of each point."""
-    with path.open(encoding="latin-1") as file, warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "loadtxt: input contained no data")
-        rows = np.loadtxt(file, ndmin=2, comments="#")
-    if rows.shape[1] != 7:
-        raise ValueError(f"{rows.shape[1]} columns, not the 7 of a neuron")
-    row_of = {number: row for row, number in enumerate(rows[:, 0].tolist())}
-    parents = [row_of.get(number, -1) for number in rows[:, 6].tolist()]
-    if lost := np.count_nonzero((np.array(parents) < 0) & (rows[:, 6] >= 0)):
-        _check.warn(f"file: '{path}': {lost} points follow others that are not there")
-    children: dict[int, list[int]] = {}
-    for row, parent in enumerate(parents):
-        if parent not in (-1, row):
-            children.setdefault(parent, []).append(row)
-    lines = []
-    for parent, heads in children.items():
-        if len(heads) == 1 and parents[parent] != -1:
-            continue  # inside of a branch
-        for head in heads:
-            line = [parent, head]
-            while len(further := children.get(line[-1], ())) == 1:
-                line += further
-            lines.append(line)
-    mesh = pv.PolyData(rows[:, 2:5].copy())
-    if lines:
-        mesh = pv.PolyData(
-            mesh.points, lines=np.concatenate([[len(line), *line] for line in lines])
-        )
-    mesh.point_data["radius"], mesh.point_data["type"] = rows[:, 5], rows[:, 1].astype(np.int32)
-    return mesh
-
-
 def _refuse_narrow(path: Path) -> None:
     """Raise ValueError for an elevation model in which VTK's reader divides by zero."""
     number = _head(path, _DEM_COLUMNS.stop)[_DEM_COLUMNS].strip()
@@ -584,7 +552,7 @@ _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = 
     ".pdb": molecules.of_pdb, ".ent": molecules.of_pdb, ".cif": molecules.of_cif,
     ".gro": molecule_files.of_gro, ".mol2": molecule_files.of_mol2,
     ".mol": molecule_files.of_mol, ".sdf": molecule_files.of_mol,
-    ".cube": cubes.read, ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
+    ".cube": cubes.read, ".ply": ply.read, ".su2": su2.read, ".swc": neurons.read,
     **dict.fromkeys(density_maps.SUFFIXES, density_maps.read),
     ".3ds": studio_3ds.read, ".dae": xml_scenes.read_collada, ".3mf": xml_scenes.read_3mf,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),

@@ -16,7 +16,8 @@ from pyvista.plotting.colors import get_cmap_safe
 
 from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
-from vizlight.draw.margins import ink_on
+from vizlight.draw.margins import ink_on, parted
+from vizlight.draw.ticks import numerals_of
 from vizlight.files import FORMATS
 from vizlight.looks import levels, map_parts, two_sides
 from vizlight.looks.contents import Contents, kinds_of
@@ -750,3 +751,20 @@ def colors_of(array: Named, colors: Keywords) -> Keywords:
     """Return the array and the colour map of a mesh, as a glTF file takes them."""
     names = ("cmap", "clim")
     return {"scalars": array.name} | {name: colors[name] for name in names if name in colors}
+
+
+def lines_every(title: str, levels: Sequence[float]) -> str:
+    """Return the title of a bar with the step of isolines.
+
+    Parameters
+    ----------
+    title : str
+        Title, with a unit.
+    levels : sequence of float
+        Levels of the isolines, in even steps.
+    """
+    if len(levels) < 2:
+        return title
+    _, unit = parted(title)
+    step = numerals_of([levels[1] - levels[0]])[0]
+    return f"{title}; lines every {step} {unit}".rstrip()

@@ -25,7 +25,7 @@ from vizlight.looks.recipes.drawing import (
 from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
-from vizlight.mesh import meaning
+from vizlight.mesh import meaning, neurons
 from vizlight.model import kernels
 from vizlight.vtk.cells import connectivity
 
@@ -39,6 +39,9 @@ DIRECTION = "direction"
 #: Least width of lines in widths of the thinnest, their largest in pixels, and the share of a
 #: picture that they may fill.
 THINNEST, WIDEST, COVERED = 1.7, 6.0, 0.08
+#: Side in pixels of the squares in which lines are crowded, and the share of them that they may
+#: fill.
+SQUARE, CROWDED = 24.0, 0.5
 #: Least and largest size of points in pixels, and the share of a picture that they may fill.
 POINT_SIZES, FILLED = (3.0, 14.0), 0.15
 #: Size of the points of a map in distances of neighbours, and most points whose neighbours are
@@ -73,9 +76,11 @@ def lines(case: Case) -> Drawing:
     mesh = case.data
     if case.is_of_body:
         case = replace(case, viewpoint=eye_on_body(mesh.run()))
+    elif is_tree(mesh.run()) and case.contents.flat_axis is None:
+        case = replace(case, viewpoint=eye_across(mesh.run()))
     camera = case.camera(mesh)
     scene = case.scene(camera)
-    light, pen = dict(case.wishes.light), _pen(case)
+    light, pen = dict(case.wishes.light), _pen(case, camera)
     drawn: Keywords = {"scene": scene, **pen, **case.wishes.drawn(light)}
     keys: list[Keywords] = [{"scene": scene}]
     words, note = "lines by their heading", ""
@@ -104,7 +109,27 @@ def lines(case: Case) -> Drawing:
         words = f"lines in the colours of {array.name}"
     lit = case.lit(case.data, scene, **light)
     notes = [note] if note else []
-    return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=case.data)
+    layers = [Layer(mesh, drawn), *_somas(case)]
+    return Drawing(layers, camera, scene, lit, words, keys, notes, kind=case.data)
+
+
+def is_tree(mesh: pv.DataSet) -> bool:
+    """Return whether lines are the branches of a tree, such as a neuron."""
+    return isinstance(mesh, pv.PolyData) and neurons.PATH_LENGTH in mesh.point_data
+
+
+def _somas(case: Case) -> list[Layer]:
+    """Return the layer of a ball at each point of a cell body."""
+    mesh = case.data.run()
+    kinds = mesh.point_data.get("type")
+    if not is_tree(mesh) or kinds is None or not np.any(np.asarray(kinds) == neurons.SOMA):
+        return []
+    ends = (neurons.SOMA - 0.5, neurons.SOMA + 0.5)
+    points = Step("", ".cast_to_poly_points", case.data)
+    bodies = Step("", ".threshold", points, ends, scalars="type")
+    ball = Step("", "pyvista.Sphere", radius=1.0)
+    balls = Step("soma", ".glyph", bodies, orient=False, scale="radius", factor=1.0, geom=ball)
+    return [case.words(balls)]
 
 
 def is_molecule(mesh: pv.DataSet) -> bool:
@@ -164,10 +189,11 @@ def backbone(case: Case) -> Drawing:
     return replace(drawing, words=f"backbone in the colours of {name}", keys=keys)
 
 
-def _pen(case: Case) -> Keywords:
+def _pen(case: Case, camera: Step) -> Keywords:
     """Return the width of lines by their spacing, and a dark outline of dense ones.
 
-    Few are wider than many. Halos of the colour of the ground would cut dense ones to pieces.
+    Few are wider than many, and so are those that lie apart. Halos of the colour of the ground
+    would cut dense ones to pieces.
     """
     mesh: pv.PolyData = case.data.run()
     if case.wishes.picture.get("line_width") or not isinstance(mesh, pv.PolyData):
@@ -179,9 +205,36 @@ def _pen(case: Case) -> Keywords:
     columns, rows = case.wishes.size
     length = float(np.nansum(steps)) / (mesh.length or 1.0) * np.hypot(columns, rows)
     widest = COVERED * columns * rows / max(length, 1e-9)
+    pixel = pixel_of(case, camera)
+    crowd = _crowd(places / pixel, steps / pixel, camera)
+    widest = min(widest, CROWDED * SQUARE / max(crowd, 1e-9))
     thinnest = THINNEST * case.width
     pen: Keywords = {"line_width": round(float(np.clip(widest, thinnest, WIDEST)), 1)}
     return pen | {"halo": "black"} if widest < thinnest else pen
+
+
+def _crowd(places: Array, lengths: Array, camera: Step) -> float:
+    """Return the length of lines in the usual square of the picture, in sides of the square.
+
+    Half of the length is in squares that hold more. Places and lengths of segments are in pixels.
+    """
+    eye = camera.run()
+    right = np.cross(eye.direction, eye.up)
+    flat = places @ np.stack([right / np.linalg.norm(right), eye.up], axis=1)
+    (kept,) = np.nonzero(lengths > 0)
+    if not len(kept):
+        return 0.0
+    # Long segments are in several squares.
+    counts = np.ceil(lengths[kept] / SQUARE).astype(np.intp)
+    number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    share = (number + 0.5) / np.repeat(counts, counts)
+    first = np.repeat(kept, counts)
+    middles = flat[first] + share[:, np.newaxis] * (flat[first + 1] - flat[first])
+    _, square = np.unique(np.floor(middles / SQUARE), axis=0, return_inverse=True)
+    sums = np.bincount(square.reshape(-1), np.repeat(lengths[kept] / counts, counts)) / SQUARE
+    order = np.argsort(sums)
+    total = np.cumsum(sums[order])
+    return float(sums[order[np.searchsorted(total, total[-1] / 2)]])
 
 
 def points(case: Case) -> Drawing:

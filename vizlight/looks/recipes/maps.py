@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import pyvista as pv
 
-from vizlight.draw.margins import ink_on, parted
-from vizlight.draw.ticks import even_levels, numerals_of
+from vizlight.draw.margins import ink_on
+from vizlight.draw.ticks import even_levels
 from vizlight.looks import map_parts
-from vizlight.looks.recipes.drawing import BANDS, GROUND, Drawing, Layer, range_of
+from vizlight.looks.recipes.drawing import BANDS, GROUND, Drawing, Layer, lines_every, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import charts, georeference
@@ -126,9 +126,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
         layers = [Layer(curves, {**beside, **inks, **thin}, quiet=True)]
     if smooth is not None:
         first = replace(first, mesh=smooth)
-    keys = [
-        key | {"title": f"{key['title']}{_every(key['title'], levels)}"} for key in drawing.keys
-    ]
+    keys = [key | {"title": lines_every(key["title"], levels)} for key in drawing.keys]
     if not is_relief and (cmap is None or isinstance(cmap, str)):
         shown = ends[0] / factor, ends[1] / factor
         edges = _classes(levels, shown)
@@ -177,15 +175,6 @@ def _classes(levels: Sequence[float], ends: tuple[float, float]) -> list[float]:
 def _without_limits(keywords: Keywords) -> Keywords:
     """Return keywords of a mesh without those that a lookup table replaces."""
     return {name: value for name, value in keywords.items() if name not in ("clim", "nan_color")}
-
-
-def _every(title: str, levels: Sequence[float]) -> str:
-    """Return the words that tell the step of isolines."""
-    if len(levels) < 2:
-        return ""
-    _, unit = parted(title)
-    step = numerals_of([levels[1] - levels[0]])[0]
-    return f"; lines every {step} {unit}".rstrip()
 
 
 def _has_coasts(case: Case, *, asked: bool | None) -> bool:

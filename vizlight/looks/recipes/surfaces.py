@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from vizlight.draw.ticks import USUAL, even_levels
 from vizlight.filters.fur import LENGTH
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.recipes.drawing import (
+    BESIDE,
     LIGHTNESS,
     MOST_IN_KEY,
     ON_SURFACES,
@@ -19,9 +21,11 @@ from vizlight.looks.recipes.drawing import (
     colors_of,
     colors_of_kinds,
     file_named,
+    lines_every,
     titled,
     unlit,
 )
+from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import Step
 from vizlight.mesh import blocks, meaning
 from vizlight.mesh.nspace import POSITION
@@ -35,6 +39,9 @@ if TYPE_CHECKING:
 
 #: Colour of what is seen face on and has no data, and most cells whose edges are drawn on it.
 GREY, MOST_WITH_EDGES = "#9a9a9a", 5000
+#: Length in pixels from which isolines on a solid are long, least share of their length in long
+#: ones, and least distance between them in pixels.
+LONG, SMOOTH, APART = 100.0, 0.9, 30.0
 #: Key of a kind without a name, which is its title alone.
 TITLE_ALONE: Keywords = {"question": "value", "cmap": Step("", "vizlight.maps.kinds", {0: " "})}
 
@@ -108,11 +115,44 @@ def values(case: Case) -> Drawing:
         layers = [Layer(mesh, shown), *edges.edges(camera)]
     else:
         layers = [*(Layer(side, shown) for side in sides.layers()), case.words(names)]
-    return Drawing(
+    drawing = Drawing(
         layers, camera, scene, lit,
         words, keys,
         colors=colors_of(array, keywords), notes=notes,
     )  # fmt: skip
+    is_smooth = array.role == "values" and not array.of_cells and case.contents.dimension == 3
+    return _with_isolines(case, drawing) if bent and is_smooth else drawing
+
+
+def _with_isolines(case: Case, drawing: Drawing) -> Drawing:
+    """Return a drawing of smooth values on a solid with isolines at the numbers of the bar.
+
+    Others are returned as they are: where isolines would be short or close, and other surfaces,
+    whose shape they would hide.
+    """
+    array, mesh, (bar,) = case.needed_array, drawing.layers[0].mesh, drawing.keys
+    table = bar.get("cmap")
+    is_log = getattr(table.run() if isinstance(table, Step) else table, "log_scale", False)
+    low, high = bar["clim"]
+    levels = [level for level in even_levels(low, high, USUAL) if low < level < high]
+    if is_log or not levels:
+        return drawing
+    factor, _ = meaning.usual_unit(mesh.run(), array.name, max(abs(low), abs(high)))
+    values = [float(f"{factor * level:.12g}") for level in levels]
+    lines = Step("isolines", ".contour", mesh, values, scalars=array.name)
+    curves = lines.run()
+    if not curves.n_cells:
+        return drawing
+    lengths = curves.compute_cell_sizes(area=False, volume=False)["Length"]
+    by_piece = np.bincount(curves.connectivity().cell_data["RegionId"], lengths)
+    pixel = pixel_of(case, drawing.camera)
+    is_smooth = by_piece[by_piece > LONG * pixel].sum() > SMOOTH * by_piece.sum()
+    if not is_smooth or mesh.run().area < APART * pixel * by_piece.sum():
+        return drawing
+    ink = {"color": "black", "line_width": case.width / 2, "lighting": False}
+    key = bar | {"title": lines_every(bar["title"], levels)}
+    layers = [*drawing.layers, Layer(lines, ink | BESIDE, live=False)]
+    return replace(drawing, layers=layers, keys=[key])
 
 
 def surface(case: Case) -> Drawing:
