@@ -115,8 +115,8 @@ _TURNING = "GRIB_alternativeRowScanning"
 _MORE_THAN_ALL = 10.0
 #: Axes that are no place: of them the first value is taken.
 _MEMBERS = (
-    r"(ensemble|member|realization|realisation|number|quantile|percentile|band|channel).*"
-    r"|nf|n?tiles?"
+    r"(ensemble|member|realization|realisation|number|quantile|percentile|band|channel|basin"
+    r"|region|transport_reg).*|nf|n?tiles?"
 )
 
 

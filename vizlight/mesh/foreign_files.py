@@ -280,7 +280,10 @@ def _of_meshio(path: Path) -> pv.DataSet:
                 warnings.simplefilter("ignore")
                 warnings.filterwarnings("error", "string or file could not be read to its end")
                 data = reader.read(path)
-        except (meshio.ReadError, LookupError, ValueError):
+        except (meshio.ReadError, LookupError, ValueError) as error:
+            if str(error).startswith("Incompatible cell data"):
+                data = _without_data(path, reader)
+                break
             # Several formats may have one suffix: only the last of them tells what is wrong.
             if kind == kinds[-1]:
                 raise
@@ -310,6 +313,20 @@ def _of_meshio(path: Path) -> pv.DataSet:
         more = f" (the first of {len(_SAID.texts)} warnings)" if len(_SAID.texts) > 1 else ""
         _check.warn(f"file: '{path}': {_SAID.texts[0]}{more}")
     return mesh
+
+
+#: Values of cells in a file of gmsh, which need not be those of all cells.
+_OF_SOME_CELLS = re.compile(rb"(?s)\$(Element(?:Node)?Data)\b.*?\$End\1\s*")
+
+
+def _without_data(path: Path, reader: Foreign) -> Foreign:
+    """Return what meshio reads of a file whose values are those of some cells alone."""
+    with _supervise.folder(path) as folder:
+        draft = folder / path.name
+        draft.write_bytes(_OF_SOME_CELLS.sub(b"", path.read_bytes()))
+        data = reader.read(draft)
+    _check.warn(f"file: '{path}': its values of some cells alone are left out")
+    return data
 
 
 def _drop_short(data: Foreign) -> None:
@@ -367,6 +384,9 @@ def _scan(path: Path) -> pv.PolyData:
     if count is not None and len(rows) != count:
         raise ValueError(f"{len(rows)} of {count} points are there")
     mesh = pv.PolyData(rows[:, :3].copy())
+    if rows.shape[1] == 7 and np.all(rows[:, 6] == 255) and np.ptp(rows[:, 3:6], axis=1).any():
+        # Colours with an opacity.
+        rows = rows[:, :6]
     if rows.shape[1] in (4, 7):
         mesh.point_data["intensity"] = rows[:, 3]
     if rows.shape[1] > 4:
