@@ -156,7 +156,7 @@ def test_a_scan_of_a_body_shows_bones_or_slices_but_no_skin():
     assert np.linalg.norm(look.mesh.points, axis=1).max() < 14.5
 
 
-def test_both_signs_of_an_orbital_are_shown():
+def test_both_signs_of_an_orbital_are_shown(monkeypatch):
     grid = pv.ImageData(dimensions=(25, 25, 25), origin=(-12.0,) * 3)
     x, y, z = grid.points.T
     grid["psi"] = x * np.exp(-np.sqrt(x * x + y * y + z * z) / 2)
@@ -174,6 +174,14 @@ def test_both_signs_of_an_orbital_are_shown():
     sides = np.where(points[:, :1] > 0, 1, -1) * [4, 0, 0]
     assert np.all(np.sum(normals * (points - sides), axis=1) > 0)
     np.testing.assert_allclose(atoms.mesh.run().center, (0.5, 0, 0), atol=0.5)
+    # An atom that stands out of the lobes of a scan is in the picture.
+    grid.field_data["atom_places"] = [[0, 0, 0], [0, 0, 20]]
+    monkeypatch.setattr(volumes, "_is_scan", lambda *_: True)
+    camera = vizlight.look(grid).drawing.camera.run()
+    toward = np.array([0, 0, 20]) - camera.position
+    share = toward @ camera.GetDirectionOfProjection() / np.linalg.norm(toward)
+    assert np.degrees(np.arccos(share)) < camera.view_angle / 2
+    monkeypatch.undo()
     grid["psi"] = np.abs(grid["psi"])
     assert "±" not in vizlight.look(grid).summary
 

@@ -57,7 +57,8 @@ WHITE = (2**8 - 1, 2**16 - 1)
 #: Words in the names of kinds, whose numbers may be many.
 _KIND_WORDS = {
     "block", "body", "chain", "class", "classes", "domain", "group", "groups", "label", "labels",
-    "layer", "mat", "material", "materials", "part", "parts", "phase", "region", "regions",
+    "geometrical", "layer", "mat", "material", "materials", "part", "parts", "phase", "physical",
+    "region", "regions",
     "segment", "zone",
 }  # fmt: skip
 #: Words in the names of colours.
@@ -66,6 +67,7 @@ _COLOR_WORDS = {"rgb", "color", "colors", "colour", "colours"}
 _LOAD_WORDS = {
     "deformation", "depl", "disp", "displ", "displacement", "displacements", "force", "forces",
     "load", "loads", "moment", "moments", "reaction", "rotation", "rotations", "traction",
+    "xdisp", "xdispl", "xdsp",
 }  # fmt: skip
 #: Most points of a solid whose surface is looked at, and the share of its points on its surface
 #: from which that shows what is inside as well.

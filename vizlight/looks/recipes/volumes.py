@@ -99,6 +99,16 @@ def isosurface(case: Case) -> Drawing:
     if not level.is_sure and _is_crumbs(mesh.run()):
         return slices(case, "; isosurfaces are crumbs")
     surface, box = _framed(whole, mesh, boxed=level.boxed)
+    if has_molecule and box is None and case.wishes.frame is None:
+        # Atoms may stand out of the isosurface.
+        ball = Step("", "pyvista.Sphere", radius=1)
+        atoms = Step("atoms", "files.atoms_in", case.data)
+        balls = Step(
+            "", ".glyph", atoms, orient=False, scale="radius", factor=lines.BALL, geom=ball
+        )
+        both = Step("", "pyvista.MultiBlock", [mesh, balls])
+        frame = case.wishes.camera(both, eye_around(mesh.run()))
+        surface = replace(surface, wishes=replace(surface.wishes, frame=frame))
     second = None if case.wishes.question == "shape" else _second(case, mesh.run())
     figure = "value"
     if isinstance(level.at, tuple):
