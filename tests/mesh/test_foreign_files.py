@@ -408,6 +408,16 @@ def test_points_of_a_scan(tmp_path, count):
     np.testing.assert_array_equal(scan["color"], [[5, 255, 0], [6, 0, 255]])
 
 
+def test_triangles_in_text_of_a_brain(tmp_path):
+    path = tmp_path / "cortex.tri"
+    path.write_text("- 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 2 0 0 0 1\n- 1 1 1\n0 1 2\n")
+    mesh = vizlight.read(path)
+    assert (mesh.area, mesh.n_points) == (1, 3)
+    path.write_text(path.read_text()[:-3])
+    with pytest.raises(files.FileError, match="cannot reshape"):
+        vizlight.read(path)
+
+
 def test_a_recipe_of_gmsh_is_no_mesh(tmp_path):
     (tmp_path / "t1.geo").write_text("Point(1) = {0, 0, 0, 1};\n")
     with pytest.raises(files.FileError, match="gmsh makes a mesh of it: gmsh -3 -format msh2"):

@@ -412,6 +412,22 @@ def _attach_three(mesh: pv.PolyData, rows: Array, path: Path) -> None:
         )
 
 
+def _triangles(path: Path) -> pv.PolyData | None:
+    """Return the surface of a .tri file in text, of brains; None for one of marching cubes.
+
+    A number of points stands before these and their normals, and three of triangles before theirs.
+    """
+    if _head(path, 2) != b"- ":
+        return None
+    words = path.read_bytes().split()
+    n_points = int(words[1])
+    end = 2 + 6 * n_points
+    rows: Array = np.array(words[2:end], dtype=np.float64).reshape(n_points, 6)
+    faces: Indices = np.array(words[end + 4 :], dtype=np.intp).reshape(int(words[end + 1]), 3)
+    # The normals point in or out, by the program, and are left out.
+    return pv.PolyData.from_regular_faces(rows[:, :3].copy(), faces)
+
+
 def _lidar(path: Path) -> pv.PolyData:
     """Return the points of a LAS file with intensity, classification and colours."""
     import laspy
@@ -608,6 +624,7 @@ _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = 
     ".gro": molecule_files.of_gro, ".mol2": molecule_files.of_mol2,
     ".mol": molecule_files.of_mol, ".sdf": molecule_files.of_mol,
     ".cube": cubes.read, ".dx": cubes.read_dx, ".ply": ply.read, ".su2": su2.read, ".swc": _neuron,
+    ".tri": _triangles,
     **dict.fromkeys(density_maps.SUFFIXES, density_maps.read),
     ".3ds": studio_3ds.read, ".dae": xml_scenes.read_collada, ".3mf": xml_scenes.read_3mf,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
