@@ -45,7 +45,6 @@ from vizlight.mesh import (
 )
 from vizlight.mesh.blocks import DataSetT
 from vizlight.mesh.creases import borders, creases
-from vizlight.mesh.cutaways import cut_open
 from vizlight.mesh.derived import (
     check_dataset,
     layer_of,
@@ -55,7 +54,7 @@ from vizlight.mesh.derived import (
     warped,
     with_vectors,
 )
-from vizlight.mesh.fills import without_fills
+from vizlight.mesh.fills import without_air, without_fills
 from vizlight.mesh.molecules import atoms_in, backbone
 from vizlight.mesh.montages import side_by_side
 from vizlight.mesh.subdivision import simplices
@@ -70,9 +69,9 @@ except ImportError:  # on Windows
 
 
 __all__ = [
-    "FileError", "atoms_in", "backbone", "borders", "creases", "cut_open", "layer_of", "layers",
-    "read", "read_parts", "side_by_side", "stretched", "surface_of", "warped", "with_vectors",
-    "without_fills", "write_mesh",
+    "FileError", "atoms_in", "backbone", "borders", "creases", "layer_of", "layers", "read",
+    "read_parts", "side_by_side", "stretched", "surface_of", "warped", "with_vectors",
+    "without_air", "without_fills", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.
@@ -270,7 +269,10 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
     """Return the meshes of a file, or the one with cells of the highest dimension."""
     _check_there(path, selection.overlays)
     inner = Path(path.stem).suffix.lower()
-    if path.suffix.lower() in _UNPACK and inner and inner not in _PACKED_ALIKE:
+    is_packed = path.suffix.lower() in _UNPACK and inner and inner not in _PACKED_ALIKE
+    # GRIB is known by its first bytes: names of forecasts end by their hour.
+    is_named = path.suffix.lower() in foreign_files.PACKAGES
+    if is_packed or (not is_named and _begins(path, b"GRIB")):
         return _unpacked(path, lambda file: _read(file, selection))
     reason, notes = "no points", list[str]()
     meshes: list[Foreign] = []
@@ -343,6 +345,14 @@ def _refusal(path: Path, selection: Selection) -> str:
     except Exception:  # noqa: BLE001 - of any type: it is raised again where the file is read
         return ""
     return ""
+
+
+def _begins(path: Path, head: bytes) -> bool:
+    """Return whether a file begins with some bytes."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return file.read(len(head)) == head
 
 
 def _size(path: Path) -> int:
@@ -576,11 +586,12 @@ _MESHERS = (".med", ".mesh", ".meshb", ".msh")
 
 
 def _unpacked(path: Path, read: Callable[[Path], list[pv.DataSet]]) -> list[pv.DataSet]:
-    """Return the meshes of a packed file, from a temporary file of its contents."""
+    """Return the meshes of a packed file, or of GRIB, from a temporary file of its contents."""
+    unpack = _UNPACK.get(path.suffix.lower())
     with _supervise.folder(path) as folder:
-        inner = folder / path.stem
+        inner = folder / (path.stem if unpack else f"{path.name}.grib")
         try:
-            with _UNPACK[path.suffix.lower()](path) as packed, inner.open("wb") as file:
+            with (unpack or open)(path, "rb") as packed, inner.open("wb") as file:
                 while block := packed.read(1 << 20):
                     file.write(block)
                     if file.tell() > MOST_UNPACKED:

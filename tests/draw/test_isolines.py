@@ -67,6 +67,10 @@ def test_smooth_fields_and_noise():
     grid["r"] = grid["r"] + np.random.default_rng(1).normal(scale=3, size=grid.n_points)
     assert not are_smooth(grid, contoured(grid, "r", np.array(levels)), levels, 0.8, sparse=1.3)
     assert not are_smooth(grid, contoured(grid, "r", np.array([1e6])), [1e6], 0.8, sparse=1.3)
+    # Isolines of noise are not joined, which takes long.
+    circle = np.array([6.0])
+    assert contoured(cone(81), "r", circle, longest=13 * np.pi)
+    assert contoured(cone(81), "r", circle, longest=11 * np.pi) == []
 
 
 def test_numbers_keep_clear_of_other_lines():

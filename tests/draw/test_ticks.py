@@ -13,6 +13,7 @@ from vizlight.draw import ticks
         (-6.08e-7, 4.5, ["0", "1", "2", "3", "4"]),
         (0, 3.2e6, ["0", "1e6", "2e6", "3e6"]),
         (5, 5, ["5"]),
+        (6808412, 6809312, ["6808600", "6808800", "6809000", "6809200"]),
     ],
 )
 def test_the_numbers_of_a_bar_are_few_and_round(low, high, words):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from vizlight.looks.contents import Contents, sorted_arrays
+from vizlight.looks.contents import Contents, Named, sorted_arrays
 from vizlight.mesh import meaning
 
 
@@ -104,6 +104,18 @@ def test_clouds_and_layers_are_no_ground():
     for name in names:
         mesh[name] = np.linspace(0, 1, mesh.n_points) ** 2
     assert {array.name: array.role for array in Contents(mesh).arrays} == names
+
+
+def test_parts_of_gmsh_are_kinds_and_components_of_a_displacement_are_loads():
+    mesh = pv.Plane()
+    mesh.clear_data()
+    mesh.cell_data["gmsh:geometrical"] = np.arange(mesh.n_cells) % 99
+    (array,) = Contents(mesh).arrays
+    assert array.role == "kinds"
+    for name in ("xdsp", "ydsp", "zdsp"):
+        mesh.point_data[name] = np.linspace(0, 1, mesh.n_points)
+    assert meaning.components(mesh) == [("xdsp", "ydsp", "zdsp")]
+    assert Named("xdsp,ydsp,zdsp", "vectors", of_cells=False).is_load
 
 
 def test_two_components_are_vectors_in_a_plane_alone():

@@ -9,6 +9,7 @@ import pyvista as pv
 from PIL import Image
 
 import vizlight
+from vizlight import files
 from vizlight.files import FileError
 from vizlight.looks.recipes.drawing import titled
 from vizlight.looks.rules import RULES
@@ -541,6 +542,16 @@ def test_creases_of_a_part_are_lines_that_are_seen():
     assert creases.mesh.run().points[:, 0].max() > 0.4
     assert look.view.position[0] > 0
     assert len(vizlight.look(pv.Sphere(), size=SIZE).drawing.layers) == 1
+
+
+def test_cells_that_lie_over_others_on_a_flat_mesh_are_no_creases():
+    # Columns of a grid of an ocean come again at its seam.
+    x, y = np.meshgrid([0.0, 1, 2, 3, 1, 2], np.arange(5.0), indexing="ij")
+    grid = pv.StructuredGrid(x, y, np.zeros_like(x))
+    grid["sst"] = np.arange(30.0)
+    assert files.creases(files.surface_of(grid)).n_cells > 0
+    look = vizlight.look(grid, size=SIZE)
+    assert "creases" not in [layer.mesh.name for layer in look.drawing.layers]
 
 
 def test_points_of_a_surface_close_it_and_those_in_a_volume_do_not_hide_each_other():

@@ -44,6 +44,13 @@ def test_blocks_of_other_dimensions_are_drawn_and_walls_of_a_volume_are_not():
         {"air": volume, "wall": volume.extract_surface(algorithm="dataset_surface")}
     )
     assert [part[0].max_cell_dimensionality for part in blocks.by_dimension(walls)] == [3]
+    # The borders of a plane mesh are no lines of their own.
+    plane = pv.Plane()
+    inlet = plane.extract_feature_edges(feature_edges=False, manifold_edges=False)
+    for lines_beside, sizes in ((inlet, [2]), (inlet.translate((3, 0, 0)), [2, 1])):
+        both = pv.MultiBlock({"air": plane, "inlet": lines_beside})
+        parts = blocks.by_dimension(both)
+        assert [part[0].max_cell_dimensionality for part in parts] == sizes
 
 
 def test_an_array_that_one_of_several_has_is_enough():

@@ -128,34 +128,35 @@ def scan(*layers, axes=()):
     return grid
 
 
-def test_a_scan_of_a_body_is_cut_open_or_shows_bones():
+def test_a_scan_of_a_body_shows_bones_or_slices_but_no_skin():
     tissue = (13, 80), (8, 120)
     look = vizlight.look(scan(*tissue, axes=meaning.ANATOMY))
-    assert look.summary.startswith("NIFTI in a body cut open toward the eye")
-    cut, skin = look.drawing.layers
-    assert np.linalg.norm(cut.mesh.run().points, axis=1).max() < 14.5
-    assert np.dot(skin.mesh.run().points.mean(axis=0), look.view.direction) > 0
+    assert look.shown == "slices"
     assert look.drawing.keys[0]["cmap"] == "gray"
     assert [other.python for other in look.others] == ["question='shape'"]
     assert vizlight.look(scan(*tissue)).shown == "isosurface"
-    # What was cut out of its scan is an organ, but for what is thin.
+    # What was cut out of its scan is an organ.
     organ = vizlight.look(scan((99, 0), *tissue, axes=meaning.ANATOMY))
-    assert "cut open" in organ.summary
-    shell = vizlight.look(scan((99, 0), (13, 80), (11, 0), axes=meaning.ANATOMY))
-    assert shell.shown == "isosurface"
-    assert [other.python for other in shell.others] == ["question='value'", "question='shape'"]
+    assert organ.shown == "isosurface"
+    assert [other.python for other in organ.others] == ["question='value'", "question='shape'"]
     bones = vizlight.look(scan((99, -1000), (13, 40), (8, 900), (7, 30)))
     assert "NIFTI = 300" in bones.summary
     assert "bone" in str(bones)
     slices = vizlight.look(scan((99, -1000), (13, 40), (8, 900)), "value")
     assert (slices.shown, slices.drawing.keys[0]["cmap"]) == ("slices", "gray")
+    assert look.drawing.layers[-1].mesh.keywords.get("names") is None
     measured = scan(*tissue, axes=meaning.ANATOMY)
     # Scans that are resampled have values a little below 0.
     measured["NIFTI"][::97] = -9
     assert vizlight.look(measured).drawing.keys[0]["cmap"] == "gray"
+    measured.field_data["unit"] = ["millimetre"]
+    names = vizlight.look(measured).drawing.layers[-1].mesh.keywords["names"]
+    assert names == ["x (mm)", "y (mm)", "z (mm)"]
+    # Slices end where the air begins.
+    assert np.linalg.norm(look.mesh.points, axis=1).max() < 14.5
 
 
-def test_both_signs_of_an_orbital_are_shown():
+def test_both_signs_of_an_orbital_are_shown(monkeypatch):
     grid = pv.ImageData(dimensions=(25, 25, 25), origin=(-12.0,) * 3)
     x, y, z = grid.points.T
     grid["psi"] = x * np.exp(-np.sqrt(x * x + y * y + z * z) / 2)
@@ -173,6 +174,14 @@ def test_both_signs_of_an_orbital_are_shown():
     sides = np.where(points[:, :1] > 0, 1, -1) * [4, 0, 0]
     assert np.all(np.sum(normals * (points - sides), axis=1) > 0)
     np.testing.assert_allclose(atoms.mesh.run().center, (0.5, 0, 0), atol=0.5)
+    # An atom that stands out of the lobes of a scan is in the picture.
+    grid.field_data["atom_places"] = [[0, 0, 0], [0, 0, 20]]
+    monkeypatch.setattr(volumes, "_is_scan", lambda *_: True)
+    camera = vizlight.look(grid).drawing.camera.run()
+    toward = np.array([0, 0, 20]) - camera.position
+    share = toward @ camera.GetDirectionOfProjection() / np.linalg.norm(toward)
+    assert np.degrees(np.arccos(share)) < camera.view_angle / 2
+    monkeypatch.undo()
     grid["psi"] = np.abs(grid["psi"])
     assert "±" not in vizlight.look(grid).summary
 

@@ -340,6 +340,8 @@ def test_members_and_times_without_since():
     coords = axes_of(forecast_hour=([10.0, 20.0],), number=([7, 8, 9],))
     data = {"t": (("forecast_hour", "number", "y", "x"), values)}
     assert grid(data, coords)["t"][0] == 3
+    zonal = {"t": (("basins", "z_t", "lat_t"), np.arange(24.0).reshape(2, 3, 4))}
+    assert grid(zonal, {})["t"].max() == 11
     mesh = grid(data, coords, time=10, at={"number": 9})
     assert mesh["t"][0] == 2
     assert mesh.field_data["TimeSteps"].tolist() == [10, 20]

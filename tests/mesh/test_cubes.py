@@ -65,3 +65,33 @@ def test_atoms_are_in_the_space_of_the_values(tmp_path):
 def test_a_cube_that_is_cut_short_is_refused(tmp_path):
     with pytest.raises(FileError, match="23 of 24 values are there"):
         vizlight.read(written(tmp_path, values=VALUES[:-3]))
+
+
+DX = """# a potential
+object 1 class gridpositions counts 2 3 4
+origin 1.0 2.0 3.0
+delta 0.5 0 0
+delta 0 1.0 0
+delta 0 0 2.0
+object 2 class gridconnections counts 2 3 4
+object 3 class array type double rank 0 items 24 data follows
+{}
+attribute "dep" string "positions"
+"""
+
+
+def test_values_of_opendx_are_at_their_places(tmp_path):
+    path = tmp_path / "potential.dx"
+    path.write_text(DX.format(VALUES))
+    mesh = vizlight.read(path)
+    assert mesh["potential"][mesh.find_closest_point([1.5, 3.0, 9.0])] == 12 + 4 + 3
+    path.write_text(
+        DX.format(VALUES).replace("rank 0", "rank 1 shape 3").replace(VALUES, "0 1 2 " * 24)
+    )
+    assert vizlight.read(path)["potential"].tolist() == [[0, 1, 2]] * 24
+    path.write_text(DX.format("1 2"))
+    with pytest.raises(FileError, match="of 24 values are there"):
+        vizlight.read(path)
+    path.write_text("object 1 class array type float rank 1 shape 2 items 1 data follows\n1 2\n")
+    with pytest.raises(FileError, match="it is no regular grid in space"):
+        vizlight.read(path)

@@ -170,6 +170,10 @@ def test_a_mesh_of_gmsh(tmp_path):
     # The edge of the shape, on which the triangle has a side, is none of the mesh.
     assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
     assert mesh.cell_data.keys() == ["gmsh:geometrical"]
+    of_one = '$ElementData\n1\n"p"\n1\n0\n3\n0\n1\n1\n2 5\n$EndElementData\n'
+    path.write_text(GMSH + of_one)
+    with pytest.warns(UserWarning, match="its values of some cells alone are left out"):
+        assert vizlight.read(path).n_cells == 1
     path.write_text(GMSH.replace("2 2 1 2", "2 3 1 3"))
     with pytest.warns(UserWarning, match="gives 2 of the 3 cells that it states"):
         vizlight.read(path)
@@ -398,6 +402,20 @@ def test_points_of_a_scan(tmp_path, count):
     np.testing.assert_array_equal(scan.points, [[0, 0, 0], [1, 2, 3]])
     np.testing.assert_array_equal(scan["intensity"], [5, 6])
     np.testing.assert_array_equal(scan["color"], [[255, 0, 0], [0, 255, 7]])
+    (tmp_path / "a.pts").write_text(f"{count}0 0 0 5 255 0 255\n1 2 3 6 0 255 255\n")
+    scan = vizlight.read(tmp_path / "a.pts")
+    assert scan.point_data.keys() == ["color"]
+    np.testing.assert_array_equal(scan["color"], [[5, 255, 0], [6, 0, 255]])
+
+
+def test_triangles_in_text_of_a_brain(tmp_path):
+    path = tmp_path / "cortex.tri"
+    path.write_text("- 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 2 0 0 0 1\n- 1 1 1\n0 1 2\n")
+    mesh = vizlight.read(path)
+    assert (mesh.area, mesh.n_points) == (1, 3)
+    path.write_text(path.read_text()[:-3])
+    with pytest.raises(files.FileError, match="cannot reshape"):
+        vizlight.read(path)
 
 
 def test_a_recipe_of_gmsh_is_no_mesh(tmp_path):

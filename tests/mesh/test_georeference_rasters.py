@@ -204,6 +204,25 @@ def test_pages_of_images_are_a_volume(tmp_path, random):
     assert volume.spacing == pytest.approx((0.1, 0.1, 0.5))
 
 
+def test_numbers_of_a_scan_count_from_black_to_white(tmp_path):
+    # A file without a place, of which the writer warns.
+    with pytest.warns(rasterio.errors.NotGeoreferencedWarning):
+        path = written(
+            tmp_path / "scan.tif", np.array([[0, 1]], np.uint8), Affine.identity(), None, nbits=1,
+            photometric="MINISWHITE",
+        )  # fmt: skip
+    assert vizlight.read(path)["scan"].tolist() == [1, 0]
+
+
+def test_a_palette_of_many_colours_is_a_picture(tmp_path):
+    path = written(tmp_path / "earth.tif", np.arange(256, dtype=np.uint8).reshape(8, 32))
+    with rasterio.open(path, "r+") as file:
+        file.write_colormap(1, {number: (number, 7, 255 - number) for number in range(256)})
+    mesh = vizlight.read(path)
+    assert mesh["rgb"].shape == (256, 3)
+    np.testing.assert_array_equal(mesh["rgb"][:, 2], 255 - mesh["rgb"][:, 0])
+
+
 def test_pages_of_several_sizes_are_told(tmp_path):
     path = pages(tmp_path / "a.tif", [np.zeros((4, 5), "u1"), np.zeros((3, 5), "u1")])
     with pytest.warns(UserWarning, match="the first of 2 pages is read"):

@@ -43,7 +43,8 @@ def test_levels_on_one_grid_are_read_together(tmp_path):
 
 
 def test_the_first_group_is_read_and_other_grids_are_told(tmp_path):
-    mesh = vizlight.read(written(tmp_path / "a.grib", 2.0))
+    # Forecasts have their hour at the end of their name.
+    mesh = vizlight.read(written(tmp_path / "a.f006", 2.0))
     assert {*mesh.point_data} == {"u10", "v10"}
     assert "on other grids: t2m at heightAboveGround 2" in meaning.line(mesh)
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import vizlight
+from vizlight.looks.recipes.drawing import titled
 from vizlight.mesh import listed, meaning
 
 xr = pytest.importorskip("xarray")
@@ -163,9 +164,12 @@ def test_levels_of_a_list_are_no_rows():
         "latitude": ("values", LAT + LON % 7, {"units": "degrees_north"}),
         "level": ("level", [1000.0, 500], {"units": "hPa"}),
     }
-    mesh = vizlight.read(xr.Dataset({"t": (("level", "values"), np.stack([LAT, LON]))}, places))
+    values = {"t": (("level", "values"), np.stack([LAT, LON])), "ground": ("values", LON)}
+    mesh = vizlight.read(xr.Dataset(values, places))
     assert mesh.n_points == len(LON)
     np.testing.assert_array_equal(mesh["t"], LAT)
+    # The title of what has no level names none.
+    assert [titled(mesh, name) for name in ("t", "ground")] == ["t at 1000 hPa", "ground"]
 
 
 def of_cube(count):

@@ -19,6 +19,9 @@ def test_columns_of_places_are_points_with_the_others_as_values(tmp_path):
         mesh = vizlight.read(path)
     np.testing.assert_array_equal(mesh.points, [(0, 1, 2), (3, 4, 5)])
     np.testing.assert_array_equal(mesh["p"], [7, np.nan])
+    # Rows may end by a separator though the first line does not.
+    mesh = vizlight.read(written(tmp_path / "b.csv", "x,y,z\n0,1,2,\n3,4,5,\n"))
+    np.testing.assert_array_equal(mesh.points, [(0, 1, 2), (3, 4, 5)])
 
 
 def test_longitudes_are_a_map_with_decimal_commas(tmp_path):

@@ -338,13 +338,16 @@ def _numbers(words: list[tuple[Array, Indices, float]], height: float) -> pv.Pol
     return numbers
 
 
-def contoured(mesh: pv.DataSet, name: str, levels: Array) -> Pieces:
+def contoured(mesh: pv.DataSet, name: str, levels: Array, *, longest: float = math.inf) -> Pieces:
     """Return the connected pieces of isolines, each with its level.
 
     Parameters
     ----------
     mesh, name, levels
         As for :func:`isolines`.
+    longest : float, optional
+        Length of all isolines together above which there are none: to join those of noise takes
+        minutes.
     """
     if name not in (*mesh.point_data, *mesh.cell_data):
         there = [*mesh.point_data, *mesh.cell_data]
@@ -368,6 +371,8 @@ def contoured(mesh: pv.DataSet, name: str, levels: Array) -> Pieces:
         return []
     points = np.asarray(lines.points, dtype=np.float64)
     pairs = connectivity(lines.GetLines())[0].reshape(-1, 2)
+    if np.linalg.norm(points[pairs[:, 1]] - points[pairs[:, 0]], axis=1).sum() > longest:
+        return []
     # The points of a line have its level.
     at = np.asarray(lines.point_data[name], dtype=np.float64)[pairs[:, 0]]
     nearest = np.abs(at[:, np.newaxis] - levels).argmin(axis=1)

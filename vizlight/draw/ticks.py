@@ -47,7 +47,9 @@ def numerals_of(values: Sequence[float]) -> list[str]:
     """Return the digits of round numbers with even steps, with as many places as these need."""
     size = max(abs(value) for value in values)
     if size >= 1e6 or 0 < size < 1e-3:
-        return [_power(value) for value in values]
+        words = [_power(value) for value in values]
+        # Places of large numbers may differ in their last digits.
+        return words if len({*words}) == len(words) else [f"{value:.12g}" for value in values]
     if len(values) < 2:
         return [f"{value:.4g}" for value in values]
     step = min(abs(b - a) for a, b in itertools.pairwise(values))

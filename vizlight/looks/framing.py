@@ -35,8 +35,6 @@ AZIMUTHS, ALTITUDES = range(-155, 205, 45), (20.0, 35.0)
 DIAGONALS, ABOVE_BOX = range(-130, 230, 90), (30.0,)
 #: How much more a view counts in which all creases are seen.
 CREASED = 0.3
-#: Power of the length of a body across the picture, over that in space, by which a view counts.
-ACROSS = 2
 #: How much more a view counts in which vectors run to the right.
 RIGHTWARD = 0.1
 #: Pixels along each side of the picture in which self-occlusion is counted.
@@ -94,8 +92,8 @@ def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Vi
         return _above(mesh, contents.flat_axis)
     if mesh.n_cells and mesh.max_cell_dimensionality == 2 and isinstance(mesh, pv.PolyData):
         return _of_surface(mesh, shown)
-    points = _finite_points(mesh)
-    extent = np.ptp(points, axis=0) if len(points) else points[:0]
+    points = _some(np.asarray(mesh.points, dtype=np.float64))
+    extent = np.ptp(points[np.isfinite(points).all(axis=1)], axis=0) if len(points) else points
     if contents.dimension == 3 and len(extent) == 3 and extent.min() < LAYER * np.median(extent):
         # Data in a slab, such as a flow between two plates, are seen across it.
         return _above(mesh, int(np.argmin(extent)))
@@ -120,8 +118,9 @@ def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
         upward = {"time": "time", "latitude": "north"}.get(section[1].title, "height")
         return Viewpoint(toward, up, True, f"with {upward} up")
     right = np.cross(up, toward)
-    points = _finite_points(mesh)
+    points = _some(np.asarray(mesh.points, dtype=np.float64))
     flat = np.stack([points @ right, points @ np.asarray(up)], axis=1)
+    flat = flat[np.isfinite(flat).all(axis=1)]
     if len(flat) > 2:
         _, values, axes = np.linalg.svd(flat - flat.mean(axis=0), full_matrices=False)
         if values[0] > STRIP * values[1] and np.ptp(flat[:, 1]) > np.ptp(flat[:, 0]) / STRIP:
@@ -295,7 +294,8 @@ def eye_across(mesh: pv.PolyData) -> Viewpoint:
     mesh : pyvista.PolyData
         Mesh with points.
     """
-    points = _finite_points(mesh)
+    points = _some(np.asarray(mesh.points, dtype=np.float64))
+    points = points[np.isfinite(points).all(axis=1)]
     if len(points) < 2:
         return ISOMETRIC
     axes = np.linalg.eigh(np.cov(points.T))[1].T
@@ -306,16 +306,17 @@ def eye_across(mesh: pv.PolyData) -> Viewpoint:
 
 
 def eye_on_body(mesh: pv.DataSet) -> Viewpoint:
-    """Return the eye for data in the axes of a body: at its right or left, before or above it.
+    """Return the eye at a side of data in the axes of a body, else before, behind or above it.
 
-    The data are largest from there; a side is preferred if they are nearly as large from it.
+    Of these it is the one from which the data are largest, and a side if this is nearly as large.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
         Mesh with points, x to the right, y forward and z up.
     """
-    points = _finite_points(mesh)
+    points = _some(np.asarray(mesh.points, dtype=np.float64))
+    points = points[np.isfinite(points).all(axis=1)]
     if not len(points):
         return ISOMETRIC
     low, middle, high = np.percentile(points, (5, 50, 95), axis=0)
@@ -342,18 +343,9 @@ def _around(
         if whole > 0:
             front = _in_front(np.concatenate([middles, places]), len(middles), way)
             score *= 1 + CREASED * float(lengths[front].sum()) / whole
-        scores.append((score * _length_across(corners, areas, way) ** ACROSS, way))
+        scores.append((score, way))
     best = max(scores, key=lambda pair: pair[0])[1]
     return Viewpoint(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
-
-
-def _length_across(corners: Array, areas: Array, way: Array) -> float:
-    """Return the length of triangles across the picture, over that in space: the spread of each."""
-    middles = corners.mean(axis=1)
-    spread = np.cov(middles.T, aweights=areas) if areas.sum() > 0 else np.eye(3)
-    flat = np.stack(_plane(way))
-    across, whole = (np.linalg.eigvalsh(each)[-1] for each in (flat @ spread @ flat.T, spread))
-    return float(np.sqrt(across / whole)) if whole > 0 else 1.0
 
 
 def _of_points(points: Array, vectors: Array | None = None) -> Viewpoint:
@@ -502,12 +494,6 @@ def _triangles(surface: pv.PolyData) -> tuple[Indices, Array]:
 
 def _some(points: Array) -> Array:
     return points[:: max(len(points) // SAMPLE, 1)]
-
-
-def _finite_points(mesh: pv.DataSet) -> Array:
-    """Return some of the points of a mesh, without those that are not finite."""
-    points = _some(np.asarray(mesh.points, dtype=np.float64))
-    return points[np.isfinite(points).all(axis=1)]
 
 
 def _vector(values: Array) -> Vector:

@@ -40,8 +40,9 @@ COASTS = 20.0
 MOST_POINTS, LEVELS, SMALL = 4_000_000, (8, 16), 0.7
 #: Points along a side of a map from which on it is drawn as it is, and most steps between points.
 FINE, MOST_FINER = 300, 16
-#: Least distance between isolines, in heights of their letters.
-SPARSE = 1.3
+#: Least distance between isolines, in heights of their letters, and the length of all that are
+#: looked at, in that of lines at this distance.
+SPARSE, ROOMY = 1.3, 2.0
 #: Standard names of arrays whose highs and lows are marked.
 WITH_EXTREMES = {
     "air_pressure_at_sea_level", "air_pressure_at_mean_sea_level", "geopotential_height",
@@ -145,7 +146,11 @@ def isolines(
             ticks.even_levels(ends[0] / factor, ends[1] / factor, most) for most in LEVELS
         )
     ]
-    pieces = iso.contoured(mesh.run(), array.name, np.array(sorted({*choices[0], *choices[1]})))
+    levels = np.array(sorted({*choices[0], *choices[1]}))
+    # With room to spare, since isolines of some levels are longer than those of others.
+    x, y, _ = mesh.run().bounds_size
+    room = math.inf if always else ROOMY * x * y / (sparse * size) * len(levels) / len(choices[0])
+    pieces = iso.contoured(mesh.run(), array.name, levels, longest=room)
     smooth = itertools.takewhile(
         lambda levels: iso.are_smooth(mesh.run(), pieces, levels, size, sparse=sparse), choices
     )

@@ -18,6 +18,7 @@ from vizlight._types import Array, Foreign, Indices, Vector
 from vizlight.mesh import joining
 from vizlight.vtk import hull
 from vizlight.vtk.cells import cell_data, check_whole, field_data, has_faces, point_data
+from vizlight.vtk.topology import place_numbers
 
 #: Type of a mesh that a filter takes and returns.
 MeshT = TypeVar("MeshT", bound="pv.DataSet | pv.MultiBlock")
@@ -107,7 +108,8 @@ def _keep_fields(mesh: pv.MultiBlock, grid: pv.UnstructuredGrid) -> None:
 def by_dimension(mesh: pv.MultiBlock) -> list[pv.MultiBlock]:
     """Return the blocks of each dimension of cells, the highest first.
 
-    Surfaces beside volumes are mostly their walls, which would hide them, and are left out.
+    Surfaces beside volumes are mostly their walls, which would hide them, and are left out; so are
+    lines between the points of a plane mesh, such as those of its inlet.
     """
     parts: dict[int, pv.MultiBlock] = {}
     for block, path in named_blocks(mesh):
@@ -116,6 +118,11 @@ def by_dimension(mesh: pv.MultiBlock) -> list[pv.MultiBlock]:
             parts.setdefault(size, pv.MultiBlock()).append(block, path.lstrip("/"))
     if 3 in parts:
         parts.pop(2, None)
+    elif {*parts} == {1, 2} and min(parts[2].bounds_size) == 0:
+        both = [np.concatenate([np.asarray(one.points) for one in parts[size]]) for size in (2, 1)]
+        numbers = place_numbers(np.concatenate(both))
+        if np.isin(numbers[len(both[0]) :], numbers[: len(both[0])]).all():
+            del parts[1]
     for part in parts.values():
         for name in mesh.field_data:  # such as the time of a step
             part.field_data[name] = mesh.field_data[name]

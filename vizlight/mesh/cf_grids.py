@@ -115,8 +115,8 @@ _TURNING = "GRIB_alternativeRowScanning"
 _MORE_THAN_ALL = 10.0
 #: Axes that are no place: of them the first value is taken.
 _MEMBERS = (
-    r"(ensemble|member|realization|realisation|number|quantile|percentile|band|channel).*"
-    r"|nf|n?tiles?"
+    r"(ensemble|member|realization|realisation|number|quantile|percentile|band|channel|basin"
+    r"|region|transport_reg).*|nf|n?tiles?"
 )
 
 
@@ -646,7 +646,7 @@ class _Reader:
             dims: list[str] = [str(dim) for dim in variable.dims]
             (along,) = {*dims} & {*rows_of}
             others = {dim: self._index(dim) for dim in dims if dim != along}
-            self.said.add_array(name, variable.attrs)
+            self._say_of_array(name, variable)
             values = _within(np.asarray(variable.isel(others).values), variable.attrs)
             values, missing = fills.without_missing(name, values, self.nodata)
             words += [missing] if missing else []
@@ -704,6 +704,12 @@ class _Reader:
             ticks: Array = np.array(along.values, dtype=np.float64)
             heights, _, scale = _up(str(along.name), along.attrs, ticks, "")
             self.said.level = scale.at(float(heights[index]))
+
+    def _say_of_array(self, name: str, variable: Foreign) -> None:
+        """Say what the attributes of a variable say, and that it is at no level if it is not."""
+        self.said.add_array(name, variable.attrs)
+        if not any(self.letters[str(dim)][0] == "z" for dim in variable.dims):
+            self.said.arrays.setdefault(name, {})["level"] = "none"
 
     def _note_first(self, dims: Mapping[str, int]) -> None:
         """Note that the first value along some axes is taken, or the first one with data."""

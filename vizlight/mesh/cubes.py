@@ -1,7 +1,8 @@
-"""Cube files of quantum chemistry: values on a grid around the atoms of a molecule."""
+"""Values on a grid in text: cube files of quantum chemistry, with their atoms, and OpenDX."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -60,4 +61,41 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
         grid.field_data[molecules.NUMBERS] = atoms[:, 0].astype(np.intp)
         grid.field_data[molecules.PLACES] = unit * atoms[:, 2:]
     meaning.attach(grid, meaning.Meaning(["x in angstroms", "y", "z"]))
+    return grid
+
+
+#: Lines of comments of OpenDX, the lines of its grid, and that of its values.
+_COMMENTS = re.compile(r"(?m)^\s*#.*$")
+_COUNTS = re.compile(r"gridpositions\s+counts\s+(\d+)\s+(\d+)\s+(\d+)\s")
+_ORIGIN, _DELTA = (re.compile(rf"(?m)^\s*{word}\s+(\S+)\s+(\S+)\s+(\S+)\s*$")
+                   for word in ("origin", "delta"))  # fmt: skip
+_ITEMS = re.compile(r"\srank\s+\d+(?:\s+shape\s+(\d+))?\s+items\s+(\d+)\s+(data\s+)?follows")
+
+
+def read_dx(path: Path) -> pv.ImageData | pv.StructuredGrid:
+    """Return the values of an OpenDX file with one regular grid, such as an electric potential.
+
+    Raises
+    ------
+    ValueError
+        If it has no regular grid in space with values in text, or a number is missing.
+    """
+    text = _COMMENTS.sub("", path.read_text(encoding="latin-1"))
+    counts, origin, deltas = _COUNTS.search(text), _ORIGIN.search(text), _DELTA.findall(text)
+    items = _ITEMS.search(text)
+    if counts is None or origin is None or items is None or len(deltas) != 3:
+        raise ValueError("it is no regular grid in space with values that follow in text")
+    shape, components = tuple(map(int, counts.groups())), int(items[1] or 1)
+    affine: Array = np.eye(4)
+    affine[:3, :3] = np.array(deltas, dtype=np.float64).T
+    affine[:3, 3] = origin.groups()
+    size = int(np.prod(shape)) * components
+    words = text[items.end() :].split(maxsplit=size)[:size]
+    if len(words) != size or size != int(items[2]) * components:
+        raise ValueError(f"{len(words)} of {size} values are there")
+    grid = of_affine(affine, shape)
+    rows = np.array(words, dtype=np.float64).reshape(*shape, components)
+    # The last index runs fastest.
+    flat = rows.transpose(2, 1, 0, 3).reshape(-1, components)
+    grid.point_data[path.name.partition(".")[0]] = flat[:, 0] if components == 1 else flat
     return grid

@@ -32,7 +32,7 @@ def warn_of_last_line(path: Path, data: bytes) -> None:
     data : bytes
         Its content.
     """
-    if not data.endswith((b"\n", b"\r")):
+    if not data.endswith((b"\n", b"\r", b"End")):
         _check.warn(f"file: '{path}' may be cut in its last line, which has no line break")
 
 

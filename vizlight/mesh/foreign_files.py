@@ -32,8 +32,10 @@ from vizlight.mesh import (
     molecules,
     neurons,
     ply,
+    point_clouds,
     polylines,
     scene_files,
+    seismic,
     series,
     studio_3ds,
     su2,
@@ -279,7 +281,10 @@ def _of_meshio(path: Path) -> pv.DataSet:
                 warnings.simplefilter("ignore")
                 warnings.filterwarnings("error", "string or file could not be read to its end")
                 data = reader.read(path)
-        except (meshio.ReadError, LookupError, ValueError):
+        except (meshio.ReadError, LookupError, ValueError) as error:
+            if str(error).startswith("Incompatible cell data"):
+                data = _without_data(path, reader)
+                break
             # Several formats may have one suffix: only the last of them tells what is wrong.
             if kind == kinds[-1]:
                 raise
@@ -309,6 +314,20 @@ def _of_meshio(path: Path) -> pv.DataSet:
         more = f" (the first of {len(_SAID.texts)} warnings)" if len(_SAID.texts) > 1 else ""
         _check.warn(f"file: '{path}': {_SAID.texts[0]}{more}")
     return mesh
+
+
+#: Values of cells in a file of gmsh, which need not be those of all cells.
+_OF_SOME_CELLS = re.compile(rb"(?s)\$(Element(?:Node)?Data)\b.*?\$End\1\s*")
+
+
+def _without_data(path: Path, reader: Foreign) -> Foreign:
+    """Return what meshio reads of a file whose values are those of some cells alone."""
+    with _supervise.folder(path) as folder:
+        draft = folder / path.name
+        draft.write_bytes(_OF_SOME_CELLS.sub(b"", path.read_bytes()))
+        data = reader.read(draft)
+    _check.warn(f"file: '{path}': its values of some cells alone are left out")
+    return data
 
 
 def _drop_short(data: Foreign) -> None:
@@ -366,6 +385,9 @@ def _scan(path: Path) -> pv.PolyData:
     if count is not None and len(rows) != count:
         raise ValueError(f"{len(rows)} of {count} points are there")
     mesh = pv.PolyData(rows[:, :3].copy())
+    if rows.shape[1] == 7 and np.all(rows[:, 6] == 255) and np.ptp(rows[:, 3:6], axis=1).any():
+        # Colours with an opacity.
+        rows = rows[:, :6]
     if rows.shape[1] in (4, 7):
         mesh.point_data["intensity"] = rows[:, 3]
     if rows.shape[1] > 4:
@@ -389,6 +411,22 @@ def _attach_three(mesh: pv.PolyData, rows: Array, path: Path) -> None:
             f"file: '{path}': the last three columns are left out: they are neither colours from "
             "0 to 255 or from 0 to 1, nor normals of length 1"
         )
+
+
+def _triangles(path: Path) -> pv.PolyData | None:
+    """Return the surface of a .tri file in text, of brains; None for one of marching cubes.
+
+    A number of points stands before these and their normals, and three of triangles before theirs.
+    """
+    if _head(path, 2) != b"- ":
+        return None
+    words = path.read_bytes().split()
+    n_points = int(words[1])
+    end = 2 + 6 * n_points
+    rows: Array = np.array(words[2:end], dtype=np.float64).reshape(n_points, 6)
+    faces: Indices = np.array(words[end + 4 :], dtype=np.intp).reshape(int(words[end + 1]), 3)
+    # The normals point in or out, by the program, and are left out.
+    return pv.PolyData.from_regular_faces(rows[:, :3].copy(), faces)
 
 
 def _lidar(path: Path) -> pv.PolyData:
@@ -548,15 +586,18 @@ def _attach(data: pv.DataSetAttributes, name: object, array: Raw) -> None:
 #: Readers that need the path alone, by suffix.
 _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = {
     ".trk": _tracts, ".tck": _tracts, ".trx": _tracts_of_trx, ".pts": _scan, ".xyz": _scan,
-    ".las": _lidar, ".laz": _lidar, ".obj": _wavefront, ".off": geomview.read_off,
+    ".las": _lidar, ".laz": _lidar, ".pcd": point_clouds.read,
+    ".obj": _wavefront, ".off": geomview.read_off,
     ".pdb": molecules.of_pdb, ".ent": molecules.of_pdb, ".cif": molecules.of_cif,
     ".gro": molecule_files.of_gro, ".mol2": molecule_files.of_mol2,
     ".mol": molecule_files.of_mol, ".sdf": molecule_files.of_mol,
-    ".cube": cubes.read, ".ply": ply.read, ".su2": su2.read, ".swc": neurons.read,
+    ".cube": cubes.read, ".dx": cubes.read_dx, ".ply": ply.read, ".su2": su2.read, ".swc": neurons.read,
+    ".tri": _triangles,
     **dict.fromkeys(density_maps.SUFFIXES, density_maps.read),
     ".3ds": studio_3ds.read, ".dae": xml_scenes.read_collada, ".3mf": xml_scenes.read_3mf,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
     **dict.fromkeys((".nhdr", ".nrrd"), brains.image_of_nrrd),
+    **dict.fromkeys(seismic.SUFFIXES, seismic.read),
     **dict.fromkeys(tables.SUFFIXES, tables.read),
     **dict.fromkeys(tetgen.SUFFIXES, tetgen.read),
 }  # fmt: skip

@@ -499,6 +499,12 @@ def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str], Ki
             unit = unit or ("1" if is_counted else "")
             is_length = not unit or meaning.metres(unit) is not None
             name = "elevation" if is_length and not _of_classes(rows) else stem
+        palette = file.colormap(i + 1) if kind == "palette" and rows.dtype == np.uint8 else {}
+        if len(palette) > meaning.MOST_KINDS and not _of_classes(rows):
+            # Numbers of colours, as of a picture.
+            of_number: Raw = np.zeros((256, 3), np.uint8)
+            of_number[[*palette]] = [color[:3] for color in palette.values()]
+            name, unit, rows = "rgb", "", of_number[rows]
         # Two bands may have one description.
         name = f"{name}_{i + 1}" if name in found else name
         found[name], units[name] = rows, unit
@@ -563,9 +569,17 @@ def _of_classes(rows: Raw) -> bool:
     return few and bool(np.all(known == np.round(known)))
 
 
+#: Name of the tags of a file that say how its numbers are stored.
+_STRUCTURE = "IMAGE_STRUCTURE"
+
+
 def _band(file: Foreign, i: int) -> Raw:
     """Return the values of a band in the file's unit, NaN where they are missing."""
     rows = file.read(i + 1, masked=True)
+    if file.tags(ns=_STRUCTURE).get("MINISWHITE") == "YES" and _has_no_place(file):
+        # The numbers of an image count up from white, as those of paper that was scanned.
+        bits = int(file.tags(i + 1, ns=_STRUCTURE).get("NBITS", 8 * rows.dtype.itemsize))
+        rows = rows.dtype.type(2**bits - 1) - rows
     scale, offset = file.scales[i], file.offsets[i]
     holes = np.ma.getmaskarray(rows)
     # Labels and colours without a hole stay integers, in a half or a quarter of the memory.

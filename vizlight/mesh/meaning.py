@@ -263,8 +263,8 @@ _ANY = r"(|.*[_\-. ])([uvw])([a-tx-z]\w+)"
 _USUAL = (
     # Velocity_x, vx, B_z, VelX
     (r"(.+)([xyz])()", "x y z"),
-    # x_wind, xwind
-    (r"()([xyz])([_\-. ].+|wind|vel\w*|curr\w*|comp\w*)", "x y z"),
+    # x_wind, xwind, and xdsp of a solid
+    (r"()([xyz])([_\-. ].+|wind|vel\w*|curr\w*|comp\w*|dsp|disp\w*)", "x y z"),
     # 10u, tauu, siu, ssu, sivelu, windu, tauuo
     (r"(\d+|.*tau|si|ss|sivel|w(?:i?nd|spd)|vel|curr?|current|mean)([uv])(o?)", "u v"),
     # u, u10, um, uo, uas, UGRD_10m, water_u, 10m_u_component_of_wind

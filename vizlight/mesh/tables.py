@@ -86,6 +86,9 @@ def _columns(path: Path) -> tuple[dict[str, Array], list[str]]:
         separator = max(SEPARATORS, key=first.count)
         names = next(csv.reader([first.lstrip("# ")], delimiter=separator), [])
         rows = [row for row in csv.reader(file, delimiter=separator) if any(map(str.strip, row))]
+    if rows and all(len(row) == len(names) + 1 and not row[-1].strip() for row in rows):
+        # Some programs end each row, but not the first line, by a separator.
+        rows = [row[:-1] for row in rows]
     uneven = next((row for row in rows if len(row) != len(names)), None)
     if uneven is not None:
         raise ValueError(f"a row has {len(uneven)} columns for {len(names)} names: {uneven}")

@@ -267,9 +267,12 @@ class Case:
     def creases(self) -> Step | None:
         """Step that takes the creases of a surface, None where it has none that are meant.
 
-        Those of an isosurface come of noise, or of the size of its cells.
+        Those of an isosurface come of noise, or of the size of its cells, and those of a flat mesh
+        of cells that lie over others, as at the seam of a grid of an ocean.
         """
-        if self.is_isosurface or not isinstance(self.surface.run(), pv.PolyData):
+        if self.is_isosurface or self.contents.flat_axis is not None:
+            return None
+        if not isinstance(self.surface.run(), pv.PolyData):
             return None
         edges = Step("creases", "files.creases", self.surface)
         return edges if edges.run().n_cells else None
@@ -644,7 +647,7 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | 
     unit = "" if unit == "1" else meaning.written(unit)
     if level is not None:
         title = f"{title} = {levels.number(level)} {unit}".rstrip()
-    if text := meaning.of(mesh).level:
+    if (text := meaning.of(mesh).level) and attributes.get("level") != "none":
         title += f" at {text}"
     if series.TIME in mesh.field_data:
         date = _dated(mesh, attributes.get("cell_methods", ""))
