@@ -60,7 +60,7 @@ def wanted() -> str:
     value = os.environ.get("VIZLIGHT_FAST", "")
     if value not in ("", "0", "1"):
         expected = "0 (off), 1 (always) or nothing (where it pays)"
-        raise ValueError(_check.message("VIZLIGHT_FAST", expected, repr(value)))
+        raise _check.value_error("VIZLIGHT_FAST", expected, repr(value))
     return value
 
 

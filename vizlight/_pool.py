@@ -52,7 +52,7 @@ def workers() -> int:
     if setting:
         if not setting.isdecimal() or not int(setting):
             expected = "an integer of at least 1, or nothing (all processors)"
-            raise ValueError(_check.message("VIZLIGHT_THREADS", expected, repr(setting)))
+            raise _check.value_error("VIZLIGHT_THREADS", expected, repr(setting))
         return int(setting)
     try:
         return len(os.sched_getaffinity(0))

@@ -70,7 +70,7 @@ def box_axes(
     box = _box_of(mesh)
     every: object = names
     if not isinstance(every, list | tuple) or len(every) != 3:
-        raise ValueError(_check.message("names", "three texts", _check.describe(names)))
+        raise _check.value_error("names", "three texts", _check.describe(names))
     names = [_check.text("names", name) for name in every]
     height, size = _check.positive("height", height), _check.positive("size", size)
     eye = _Eye(camera, height)
@@ -150,9 +150,9 @@ def captions(
     expected = f"two words for each of the {len(meshes)} blocks"
     pairs: object = ends
     if not isinstance(pairs, list | tuple) or len(pairs) not in (0, len(meshes)):
-        raise ValueError(_check.message("ends", expected, _check.describe(ends)))
+        raise _check.value_error("ends", expected, _check.describe(ends))
     if not all(isinstance(pair, list | tuple) and len(pair) == 2 for pair in pairs):
-        raise ValueError(_check.message("ends", expected, _check.describe(ends)))
+        raise _check.value_error("ends", expected, _check.describe(ends))
     ends = [[_check.text("ends", word) for word in pair] for pair in ends]
     eye = _Eye(camera, height)
     parts = list[tuple["Array", "Indices"]]()
@@ -193,7 +193,7 @@ def _box_of(mesh: object) -> Array:
     if not isinstance(mesh, pv.DataSet):
         raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
     if not mesh.n_points:
-        raise ValueError(_check.message("mesh", "a mesh with points", "none"))
+        raise _check.value_error("mesh", "a mesh with points", "none")
     box: Array = _check.coordinates("mesh", mesh.bounds).reshape(3, 2)
     return box
 

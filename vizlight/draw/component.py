@@ -236,7 +236,7 @@ class Component:
             live.name = path.lstrip("/") or str(drawing.get("name") or "")
             actors.append(self._add(plotter, live, shown, keywords_of))
         if not several and not actors:
-            raise ValueError(_check.message("mesh", "a mesh with points", "none"))
+            raise _check.value_error("mesh", "a mesh with points", "none")
         return actors if several else actors[0]
 
     def add_key(
@@ -338,7 +338,7 @@ class Component:
         lying = _check.boolean("lying", lying)
         if lying and len(mesh.field_data[WORDS]) == 1:
             expected = "False for a key that is a disc"
-            raise ValueError(_check.message("lying", expected, lying, "take the key of a bar"))
+            raise _check.value_error("lying", expected, lying, "take the key of a bar")
         renderer = plotter.renderer
         if _address(renderer) not in self._margins:
             ink = _check.color("color", color)
@@ -364,7 +364,7 @@ class Component:
                     options |= {"cmap": table, "title": title}
                 return lit_by, options | {"question": question}
         expected, remedy = "a scene, or a mesh with live light", "pass the scene of the picture"
-        raise ValueError(_check.message("scene", expected, None, remedy))
+        raise _check.value_error("scene", expected, None, remedy)
 
     def export_html(
         self,
@@ -499,7 +499,7 @@ class Component:
         ]
         if not visible_meshes:
             remedy = "add a mesh by plotter.vizlight.add_mesh"
-            raise ValueError(_check.message("plotter", "a mesh with live light", "none", remedy))
+            raise _check.value_error("plotter", "a mesh with live light", "none", remedy)
         if others := len(visible) - len(visible_meshes):
             _check.warn(f"{others} actors without light of vizlight are not in the page")
         # Until its first picture a plotter of PyVista has no view of its data, and a page takes
@@ -595,7 +595,7 @@ class Component:
             raise TypeError(_check.message("actor", expected, _check.describe(actor)))
         live = self._live_of(actor)
         if live is None:
-            raise ValueError(_check.message("actor", expected, _check.describe(actor)))
+            raise _check.value_error("actor", expected, _check.describe(actor))
         return live
 
     def _live_of(self, actor: vtkActor) -> Live | None:

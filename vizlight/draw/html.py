@@ -677,7 +677,7 @@ def live_html(
     _check.text("frames", frames)
     steps: dict[float, Foreign] = dict(mesh) if isinstance(mesh, Mapping) else {0.0: mesh}
     if not steps:
-        raise ValueError(_check.message("mesh", "one mesh or more", "an empty mapping"))
+        raise _check.value_error("mesh", "one mesh or more", "an empty mapping")
     values = [_check.number("mesh", value) for value in steps]
     plotter: Foreign = pv.Plotter(off_screen=True, notebook=False)
     try:

@@ -115,7 +115,7 @@ def isolines(
     letters = _check.positive("letters", letters)
     if letters < SMALLEST * mesh.length:
         expected = f"a height of at least {SMALLEST * mesh.length:g}"
-        raise ValueError(_check.message("letters", expected, f"{letters:g}"))
+        raise _check.value_error("letters", expected, f"{letters:g}")
     values = _check.coordinates("levels", levels).ravel()
     if words is not None:
         _check.iterable("words", words, "a text for each level")
@@ -126,7 +126,7 @@ def isolines(
     )
     if len(texts) != len(values):
         expected = f"a word for each of the {len(values)} levels"
-        raise ValueError(_check.message("words", expected, len(texts)))
+        raise _check.value_error("words", expected, len(texts))
     unit = None if extremes is None else _check.positive("extremes", extremes)
     pieces = contoured(mesh, name, values)
     return labelled(
@@ -349,12 +349,12 @@ def contoured(mesh: pv.DataSet, name: str, levels: Array) -> Pieces:
     if name not in (*mesh.point_data, *mesh.cell_data):
         there = [*mesh.point_data, *mesh.cell_data]
         expected = f"the name of an array, {_words.one_of(there)}"
-        raise ValueError(_check.message("name", expected, _check.describe(name)))
+        raise _check.value_error("name", expected, _check.describe(name))
     mesh = records.averaged(mesh, name)
     values = np.asarray(mesh.point_data[name])
     if values.ndim != 1 or values.dtype.kind not in "biuf":
         expected, got = "an array of one component", f"{name!r} of {_check.describe(values)}"
-        raise ValueError(_check.message("name", expected, got))
+        raise _check.value_error("name", expected, got)
     there = np.isfinite(values) & np.isfinite(mesh.points).all(axis=1)
     if not there.any():
         return []

@@ -309,7 +309,7 @@ def _check_panels(
         for item in items
     ]
     if not shown:
-        raise ValueError(_check.message("panels", "one mesh or more", "none"))
+        raise _check.value_error("panels", "one mesh or more", "none")
     for panel in shown:
         if not isinstance(panel.mesh, Mesh):
             raise TypeError(
@@ -323,11 +323,11 @@ def _check_panels(
                 expected = f"a point array or a cell array ({names})"
                 lit = panel.scalars == DEFAULT_NAME
                 remedy = "light the mesh first, by vizlight.illuminate" if lit else ""
-                raise ValueError(_check.message("scalars", expected, repr(panel.scalars), remedy))
+                raise _check.value_error("scalars", expected, repr(panel.scalars), remedy)
             if array.dtype.kind not in "biuf" or array.shape[1:] not in ((), (1,), (3,), (4,)):
                 expected = "real numbers of 1 component, or colours of 3 or 4"
                 got = f"{panel.scalars!r} of shape {array.shape} and type {array.dtype}"
-                raise ValueError(_check.message("scalars", expected, got))
+                raise _check.value_error("scalars", expected, got)
     return shown
 
 
@@ -339,12 +339,12 @@ def _check_options(
         raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
     low, high = _check.limits("clim", clim)
     if low == high:
-        raise ValueError(_check.message("clim", "a lower and a higher number", clim))
+        raise _check.value_error("clim", "a lower and a higher number", clim)
     try:
         pv.LookupTable(cmap)
     except (TypeError, ValueError) as error:
         got = _check.describe(cmap)
-        raise ValueError(_check.message("cmap", "the name of a colour map", got)) from error
+        raise _check.value_error("cmap", "the name of a colour map", got) from error
     _check.choice("anti_aliasing", anti_aliasing, get_args(AntiAliasing), optional=True)
     return low, high
 
@@ -430,12 +430,12 @@ def pixels_of(size: object) -> list[int]:
         If the size is not two positive integers within the limits of anti-aliasing.
     """
     if _check.reals("size", size).shape != (2,):
-        raise ValueError(_check.message("size", "(width, height) in pixels", _check.describe(size)))
+        raise _check.value_error("size", "(width, height) in pixels", _check.describe(size))
     sides = _check.vector("size", size)
     pixels = [_check.integer("size", int(p) if p == int(p) else p, low=1) for p in sides]
     if max(pixels) > LARGEST_SIDE or pixels[0] * pixels[1] > LARGEST_AREA:
         limit = f"at most {LARGEST_SIDE} pixels per side and {LARGEST_AREA // 10**6} million in all"
-        raise ValueError(_check.message("size", limit, f"{pixels[0]}x{pixels[1]}"))
+        raise _check.value_error("size", limit, f"{pixels[0]}x{pixels[1]}")
     return pixels
 
 

@@ -165,10 +165,8 @@ def _make(
     if isinstance(mesh, Solid):
         for option in ("normals", "tangents"):
             if getattr(options, option) is not None:
-                raise ValueError(
-                    _check.message(
-                        option, "None for a solid, which has its own", "an array", "leave it out"
-                    )
+                raise _check.value_error(
+                    option, "None for a solid, which has its own", "an array", "leave it out"
                 )
         bands = _of_solid(mesh, light)
         rgb = _rgb(bands, light) if scene.colored else None
@@ -378,10 +376,8 @@ def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices, Indices, Indices |
     surface, ids = (mesh, None) if isinstance(mesh, pv.PolyData) else blocks.outer_surface(mesh)
     if surface.n_points and not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
         remedy = "pass a contour or the mesh's extract_surface()"
-        raise ValueError(
-            _check.message(
-                "mesh", "a surface with faces", f"a {type(mesh).__name__} without", remedy
-            )
+        raise _check.value_error(
+            "mesh", "a surface with faces", f"a {type(mesh).__name__} without", remedy
         )
     triangles, _ = subdivision.triangles(surface)
     used = np.zeros(surface.n_points, np.bool_)

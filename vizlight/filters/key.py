@@ -118,7 +118,7 @@ def key(
         low, high = _check.limits("clim", clim)
         if not low < high or np.any(np.diff(values) <= 0):
             expected = "numbers that ascend, of a range that is given by clim"
-            raise ValueError(_check.message("levels", expected, list(values)))
+            raise _check.value_error("levels", expected, list(values))
         scale = np.log if isinstance(cmap, pv.LookupTable) and cmap.log_scale else np.asarray
         low, high, *places = scale([low, high, *values]).tolist()
         steps = [(place - low) / (high - low) for place in places]
@@ -377,7 +377,7 @@ def _in_frame_of_eye(scene: Scene) -> Scene:
     for light in scene.lights:
         if light.position is not None:
             expected, remedy = "lights at infinity for a key", "give them directions"
-            raise ValueError(_check.message("scene", expected, light, remedy))
+            raise _check.value_error("scene", expected, light, remedy)
         # A light that follows the view is given in the frame of the eye already.
         if not light.follows_view and light.direction is not None:
             unit = np.divide(light.direction, np.abs(light.direction).max())

@@ -95,10 +95,10 @@ def save(
     """
     read = {name: options[name] for name in READ if name in options}
     if "time" in read:
-        raise ValueError(_check.message("time", "none beside a movie of all steps", "one"))
+        raise _check.value_error("time", "none beside a movie of all steps", "one")
     times = series.of(files.read(data, **read))
     if not times:
-        raise ValueError(_check.message("data", "a series of steps", "one mesh"))
+        raise _check.value_error("data", "a series of steps", "one mesh")
     _check.integer("per_step", per_step, low=1, high=100)
     fps = _pace(times) if fps is None else _check.number("fps", fps, low=0.01, high=100.0)
     pictures = _Pictures(_looks(data, question, times, options), times, per_step)

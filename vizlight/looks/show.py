@@ -144,7 +144,7 @@ def _size(window_size: object) -> list[int]:
     sides = _check.vector("window_size", window_size)
     if len(sides) != 2 or not all(1 <= side <= 1 << 14 for side in sides):
         expected = "(width, height), each from 1 to 16384 pixels"
-        raise ValueError(_check.message("window_size", expected, sides))
+        raise _check.value_error("window_size", expected, sides)
     return [int(side) for side in sides]
 
 

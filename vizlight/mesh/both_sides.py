@@ -61,11 +61,10 @@ def both_sides(
         raise TypeError(_check.message("surface", "a surface", _check.describe(surface)))
     carried = surface.point_data.active_normals
     if carried is not None and carried.shape[1:] != (3,):
-        got = _check.describe(carried)
-        raise ValueError(_check.message("surface", "normals of 3 components", got))
+        raise _check.value_error("surface", "normals of 3 components", _check.describe(carried))
     back, upward = _check.unit("toward", toward), _check.unit("up", up)
     if not isinstance(names, list | tuple) or len(names) != 2:
-        raise ValueError(_check.message("names", "two names", _check.describe(names)))
+        raise _check.value_error("names", "two names", _check.describe(names))
     words = [_check.text("names", name) for name in names]
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Integer points, vector")

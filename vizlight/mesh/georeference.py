@@ -264,7 +264,7 @@ def in_degrees(mesh: DataSetT, /) -> DataSetT:
     _, _, south, north, _, _ = _check.coordinates("mesh", mesh.bounds)
     if mesh.n_points and not -90 <= south <= north <= 90:
         expected = "a mesh whose y is a latitude, from -90 to 90"
-        raise ValueError(_check.message("mesh", expected, f"y from {south:g} to {north:g}"))
+        raise _check.value_error("mesh", expected, f"y from {south:g} to {north:g}")
     named = mesh.copy(deep=False)
     named.field_data[UNIT] = [DEGREE]
     return named

@@ -67,13 +67,13 @@ def globe(
         raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
     if not georeference.has_degrees(mesh):
         remedy = "pass it through vizlight.cartography.in_degrees"
-        raise ValueError(_check.message("mesh", "a map in degrees", "no such unit", remedy))
+        raise _check.value_error("mesh", "a map in degrees", "no such unit", remedy)
     _check.coordinates("mesh", mesh.bounds)
     if not np.isfinite(np.asarray(mesh.points)).all():
-        raise ValueError(_check.message("mesh", "points that are finite", "NaN"))
+        raise _check.value_error("mesh", "points that are finite", "NaN")
     if mesh.bounds_size[2] > 0:
         expected, got = "a flat map", f"one of {mesh.bounds_size[2]:g} along z"
-        raise ValueError(_check.message("mesh", expected, got))
+        raise _check.value_error("mesh", expected, got)
     lines = mesh if isinstance(mesh, pv.PolyData) and mesh.n_lines else None
     flat = _surface(closed(mesh)) if lines is None else divided(lines)
     for names in meaning.components(flat):

@@ -291,7 +291,7 @@ def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
         rows = atoms.point_data.get(name)
         if rows is None or rows.ndim != 1:
             expected = f"a molecule of a PDB or CIF file, with the point array {name!r}"
-            raise ValueError(_check.message("atoms", expected, f"arrays {atoms.point_data.keys()}"))
+            raise _check.value_error("atoms", expected, f"arrays {atoms.point_data.keys()}")
     marks = np.asarray(atoms.point_data[BACKBONE])
     marked = np.flatnonzero(marks == 1)
     places = np.asarray(atoms.points, dtype=np.float64)
@@ -358,7 +358,7 @@ def atoms_in(volume: pv.DataSet, /) -> pv.PolyData:
         raise TypeError(_check.message("volume", "a pyvista.DataSet", _check.describe(volume)))
     if not {NUMBERS, PLACES} <= {*volume.field_data.keys()}:
         expected = f"the volume of a cube file, with field arrays {NUMBERS!r} and {PLACES!r}"
-        raise ValueError(_check.message("volume", expected, f"{volume.field_data.keys()}"))
+        raise _check.value_error("volume", expected, f"{volume.field_data.keys()}")
     table = vtkPeriodicTable()
     numbers = np.ravel(volume.field_data[NUMBERS]).tolist()
     places = np.reshape(volume.field_data[PLACES], (-1, 3))

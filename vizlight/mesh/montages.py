@@ -66,7 +66,7 @@ def side_by_side(volume: pv.DataSet, name: str, /) -> pv.ImageData:
         expected = (
             f"the name of a point array of one component, {_check.one_of(volume.point_data.keys())}"
         )
-        raise ValueError(_check.message("name", expected, repr(name)))
+        raise _check.value_error("name", expected, repr(name))
     steps, across = _steps(volume), int(np.argmin(dimensions(volume)))
     first, second = (axis for axis in range(3) if axis != across)
     # The axis that rises most is up, and points away from the eye where none does.

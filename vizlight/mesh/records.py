@@ -218,7 +218,7 @@ def refuse_overwriting(
                 edited = array in (read(mesh, name) or {}).get("arrays", {})
                 got = repr(array) + ", changed since it was computed" * edited
                 remedy = "pass another name=, rename that array or delete it"
-                raise ValueError(_check.message("name", expected, got, remedy))
+                raise _check.value_error("name", expected, got, remedy)
 
 
 def amend(mesh: pv.DataSet, name: str, filter_name: str, *options: object) -> None:
@@ -271,10 +271,8 @@ def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> 
         names |= {key for key in _names(block) if read(block, key) is not None}
     if not names:
         remedy = "light it first, or read it from a file format that keeps field data"
-        raise ValueError(_check.message("mesh", "one with an array by vizlight", "none", remedy))
-    raise ValueError(
-        _check.message("name", f"one of the arrays by vizlight, {sorted(names)}", repr(name))
-    )
+        raise _check.value_error("mesh", "one with an array by vizlight", "none", remedy)
+    raise _check.value_error("name", f"one of the arrays by vizlight, {sorted(names)}", repr(name))
 
 
 #: Number of values below which an array is sooner copied than shared.
@@ -321,7 +319,7 @@ def scalars_of(mesh: pv.DataSet, argument: str, name: object) -> AnyArray:
     names = [key for key in data if data[key].ndim == 1]
     if name not in names:
         expected = f"a point array of one component, {_check.one_of(names)}"
-        raise ValueError(_check.message(argument, expected, repr(name)))
+        raise _check.value_error(argument, expected, repr(name))
     return np.asarray(data[str(name)])
 
 

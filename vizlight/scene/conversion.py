@@ -50,7 +50,7 @@ def to_property(values: Keywords, *, lights: Lights, view: AnyView, model: str) 
     for name, value in coefficients.items():
         if value > 1:
             remedy = "make the lights brighter instead"
-            raise ValueError(_check.message(name, "at most 1, the limit of VTK", value, remedy))
+            raise _check.value_error(name, "at most 1, the limit of VTK", value, remedy)
     power = values["shininess"]
     # VTK takes its model from the lights and has no switch for it, so that the power must change.
     if _check_model(model) != vtk_model(lamps):
@@ -137,7 +137,7 @@ def _fixed(light: vtkLight, view: AnyView) -> tuple[Light, ...]:
     if moves and light.GetPositional() and not is_camera(view):
         expected, got = "a pyvista.Camera as view= beside a lamp that moves with it", view
         remedy = "or take both by Scene.from_plotter(plotter)"
-        raise ValueError(_check.message("lights", expected, got, remedy))
+        raise _check.value_error("lights", expected, got, remedy)
     return tuple(lights_of([light], view if is_camera(view) else None))
 
 
@@ -153,14 +153,14 @@ def _check_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
         # A headlight has neither, and is in any space.
         n = len(light.direction or light.position or ()) or 3
         if n != 3:
-            raise ValueError(_check.message("lights", "vectors of 3 components, as in VTK", n))
+            raise _check.value_error("lights", "vectors of 3 components, as in VTK", n)
     return lamps
 
 
 def _check_model(model: str) -> str:
     if not (isinstance(model, str) and model in ("phong", "blinn")):
         expected = "'phong' or 'blinn', which VTK can approximate"
-        raise ValueError(_check.message("model", expected, _check.describe(model)))
+        raise _check.value_error("model", expected, _check.describe(model))
     return model
 
 

@@ -218,7 +218,7 @@ def optional_scene(scene: AnyScene | None) -> Scene | None:
     if isinstance(scene, str):
         if scene not in PRESETS:
             expected = f"a vizlight.Scene, or {', '.join(map(repr, PRESETS))}"
-            raise ValueError(_check.message("scene", expected, repr(scene)))
+            raise _check.value_error("scene", expected, repr(scene))
         preset: Scene = PRESETS[scene]()
         return preset
     _check.instance("scene", scene, Scene, optional=True)

@@ -114,9 +114,7 @@ class Scene:
         # Light is computed from products of these vectors, which must be of one space.
         sizes = _sizes(lights, view)
         if len(sizes) > 1:
-            raise ValueError(
-                _check.message("Scene", "vectors of one space", f"{sorted(sizes)} components")
-            )
+            raise _check.value_error("Scene", "vectors of one space", f"{sorted(sizes)} components")
 
     @property
     def n(self) -> int | None:
@@ -149,7 +147,7 @@ class Scene:
         offset = _check.vector("offset", offset)
         if self.n not in (None, len(offset)):
             expected = f"{self.n} components, as the vectors of the scene have"
-            raise ValueError(_check.message("offset", expected, len(offset)))
+            raise _check.value_error("offset", expected, len(offset))
         # A light at infinity has no place that could move.
         lights = tuple(
             dataclasses.replace(light, position=tuple(np.add(light.position, offset)))
@@ -263,7 +261,7 @@ class Scene:
         fields.setdefault("lights", list(conversion.lights_of(renderer.GetLights(), camera)))
         if actor is not None:
             if "material" in fields:
-                raise ValueError(_check.message("material", "an actor alone", "both"))
+                raise _check.value_error("material", "an actor alone", "both")
             lights, view = fields["lights"], fields["view"]
             fields["material"] = _of_actor(actor, lights, view, model)
             # A lone headlight's highlight is as from an eye at infinity in VTK.
@@ -315,5 +313,5 @@ def _fields(
         raise TypeError(_check.message(name, expected, _check.describe(values)))
     for key in values:
         if key not in names:
-            raise ValueError(_check.message(name, expected, repr(key)))
+            raise _check.value_error(name, expected, repr(key))
     return dict(values)

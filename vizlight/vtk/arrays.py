@@ -129,7 +129,7 @@ def array_of(
             array = array.reshape(len(array), -1)
         if array.ndim == 0 or len(array) != mesh.GetNumberOfPoints():
             expected = f"{mesh.GetNumberOfPoints()} rows, one per point"
-            raise ValueError(_check.message(name, expected, _check.describe(array)))
+            raise _check.value_error(name, expected, _check.describe(array))
     return _real_rows(name, array, what)
 
 
@@ -140,7 +140,7 @@ def _real_rows(name: str, array: Array, what: str) -> Array:
     if array.ndim != 2:
         expected = "vectors, an array of 2 or more components"
         got = f"{what}1 component" if array.ndim == 1 else f"{what}shape {array.shape}"
-        raise ValueError(_check.message(name, expected, got, "name another array"))
+        raise _check.value_error(name, expected, got, "name another array")
     return array
 
 
@@ -150,7 +150,7 @@ def _named(mesh: Dataset, name: str, value: str, sizes: Collection[int]) -> Arra
         return of_points
     if mesh.GetCellData().HasArray(value):
         remedy = "call mesh.cell_data_to_point_data()"
-        raise ValueError(_check.message(name, "a point array", f"the cell array {value!r}", remedy))
+        raise _check.value_error(name, "a point array", f"the cell array {value!r}", remedy)
     there = [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
     fitting = [
         repr(array.GetName())
@@ -158,7 +158,7 @@ def _named(mesh: Dataset, name: str, value: str, sizes: Collection[int]) -> Arra
         if (array.GetNumberOfComponents() in sizes if sizes else array.GetNumberOfComponents() > 1)
     ]
     names = ", ".join(fitting) or "none"
-    raise ValueError(_check.message(name, f"the name of a point array ({names})", repr(value)))
+    raise _check.value_error(name, f"the name of a point array ({names})", repr(value))
 
 
 def vectors_of(mesh: Dataset, name: str, value: object, n: int) -> Array:
@@ -166,7 +166,7 @@ def vectors_of(mesh: Dataset, name: str, value: object, n: int) -> Array:
     array = array_of(mesh, name, value, sizes=(n,))
     if array.shape[1] != n:
         got = _components(value, array)
-        raise ValueError(_check.message(name, f"{n} components", got, "pass another array"))
+        raise _check.value_error(name, f"{n} components", got, "pass another array")
     return array
 
 
@@ -200,10 +200,10 @@ def of_components(mesh: Dataset, argument: str, names: Sequence[str]) -> Array:
         if rows is None or rows.ndim > 1 or rows.dtype.kind not in "iubf":
             got = "no such array" if rows is None else f"shape {rows.shape}, type {rows.dtype}"
             expected = "names of arrays of one component, real numbers"
-            raise ValueError(_check.message(argument, expected, f"{name!r}: {got}"))
+            raise _check.value_error(argument, expected, f"{name!r}: {got}")
         columns.append(rows)
     if len(columns) not in (2, 3):
-        raise ValueError(_check.message(argument, "two or three components", f"{len(columns)}"))
+        raise _check.value_error(argument, "two or three components", f"{len(columns)}")
     return stacked(columns)
 
 
@@ -306,5 +306,5 @@ def _checked_tangents(argument: str, value: object, array: Array, n: int) -> Arr
         allowed = " or ".join(str(k * n) for k in range(1, min(n, 5)))
         expected = f"a point array of {allowed} components, rows of {n}"
         remedy = "name another array, or name the positions in n-space by positions="
-        raise ValueError(_check.message(argument, expected, _components(value, array), remedy))
+        raise _check.value_error(argument, expected, _components(value, array), remedy)
     return array

@@ -429,7 +429,7 @@ def given_normals(mesh: Dataset, value: object, n: int) -> Array | None:
     if n != 3:
         expected = f"a point array of {n} components for {n}-space"
         remedy = "without one pass tangents=, conditioned by the name of the surface's tangents"
-        raise ValueError(_check.message("normals", expected, None, remedy))
+        raise _check.value_error("normals", expected, None, remedy)
     carried = mesh.GetPointData().GetNormals()
     if carried is None:
         return None
@@ -552,7 +552,7 @@ def _computed(
     if wound is None:
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
         remedy = "name its tangent vectors by tangents= or its normals by normals="
-        raise ValueError(_check.message("mesh", expected, got, remedy))
+        raise _check.value_error("mesh", expected, got, remedy)
     shape, vectors, first, origin = wound
     lean, border = None, shape.open | shape.inside_out
     side: Indices = border.astype(np.intp)
