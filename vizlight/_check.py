@@ -15,6 +15,7 @@ import sys
 import threading
 import warnings
 from pathlib import Path
+from types import UnionType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -420,23 +421,27 @@ def color(name: str, value: object) -> Color | None:
 def instance(
     name: str,
     value: object,
-    kind: type,
+    kind: type | UnionType,
+    expected: str = "",
     *,
     optional: bool = False,
     home: str = "",
     remedy: str = "",
 ) -> None:
-    """Check that a value is an instance of a class of this package.
+    """Check that a value is an instance of a class.
 
-    With ``optional=True`` None is allowed too. ``home`` is the public module that holds the
-    class, if the package itself does not export it.
+    With ``optional=True`` None is allowed too. Without ``expected``, the words for the class, it is
+    one of this package; ``home`` is the public module that holds it, if the package itself does not
+    export it.
     """
-    if not (isinstance(value, kind) or (optional and value is None)):
+    if isinstance(value, kind) or (optional and value is None):
+        return
+    if not expected and isinstance(kind, type):
         where = f"vizlight.{home}." if home else "vizlight."
         expected = f"a {where}{kind.__name__}" + (" or None" if optional else "")
         if not remedy and callable(value) and hasattr(value, "__name__"):
             remedy = f"call it: {value.__name__}()"
-        raise TypeError(message(name, expected, describe(value), remedy))
+    raise TypeError(message(name, expected, describe(value), remedy))
 
 
 def set_fields(frozen: object, **values: object) -> None:

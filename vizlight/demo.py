@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -118,7 +119,7 @@ def save_picture(
         plotter = pv.Plotter(
             off_screen=True, shape=(1, 2), window_size=render.pixels_of(size), border=False
         )
-    try:
+    with contextlib.closing(plotter):
         arrows = demo.globe.glyph(orient="wind", scale=False, factor=SPACING, tolerance=SPACING / 2)
         plotter.add_mesh(demo.globe, color="lightsteelblue", smooth_shading=True)
         plotter.add_mesh(arrows, color="black")
@@ -132,8 +133,6 @@ def save_picture(
         _panel(plotter, f"vizlight: hue is the direction, read to {wrong:.1f}\N{DEGREE SIGN}")
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
         return files.replace_file(path, plotter.screenshot, doing="draw")
-    finally:
-        plotter.close()
 
 
 def _panel(plotter: pv.Plotter, text: str) -> None:

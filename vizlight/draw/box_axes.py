@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight._types import Array, Indices
+from vizlight._types import Array, Given, Indices
 from vizlight.draw.cameras import footprint
 from vizlight.draw.map_frames import rectangle
 from vizlight.draw.ticks import even_numbers, round_length
@@ -143,8 +143,7 @@ def captions(
     TypeError, ValueError
         If a block has no finite box, a height is not positive, or a block has no two ends.
     """
-    if not isinstance(meshes, pv.MultiBlock):
-        raise TypeError(_check.message("meshes", "a MultiBlock", _check.describe(meshes)))
+    _check.instance("meshes", meshes, pv.MultiBlock, "a MultiBlock")
     height, size = _check.positive("height", height), _check.positive("size", size)
     unit = _check.text("unit", unit)
     expected = f"two words for each of the {len(meshes)} blocks"
@@ -188,10 +187,9 @@ def _around(
     return parts
 
 
-def _box_of(mesh: object) -> Array:
+def _box_of(mesh: Given) -> Array:
     """Return the ends of the box of a mesh along x, y and z."""
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     if not mesh.n_points:
         raise _check.value_error("mesh", "a mesh with points", "none")
     box: Array = _check.coordinates("mesh", mesh.bounds).reshape(3, 2)
@@ -210,8 +208,7 @@ class _Eye:
     """
 
     def __init__(self, camera: pv.Camera, height: float) -> None:
-        if not isinstance(camera, pv.Camera):
-            raise TypeError(_check.message("camera", "a camera", _check.describe(camera)))
+        _check.instance("camera", camera, pv.Camera, "a camera")
         self._camera, self._height = camera, height
         self.place = np.array(camera.position, dtype=np.float64)
         self.away = np.array(camera.GetDirectionOfProjection())

@@ -838,12 +838,9 @@ def add_recorded(
         None, and nothing is added, if the mesh has no such light, the record does not suffice, or
         the light cannot be computed in each fragment.
     """
-    arguments: tuple[object, object] = plotter, mesh
-    if not isinstance(arguments[0], pv.BasePlotter):
-        got = _check.describe(arguments[0])
-        raise TypeError(_check.message("plotter", "a pyvista.Plotter", got))
+    _check.instance("plotter", plotter, pv.BasePlotter, "a pyvista.Plotter")
     blocks.check(mesh)
-    if isinstance(arguments[1], pv.MultiBlock):
+    if isinstance(mesh, pv.MultiBlock):
         remedy = "add its blocks one after the other"
         raise TypeError(_check.message("mesh", "one dataset", "a MultiBlock", remedy))
     _check.text("name", name, expected="the name of the light")

@@ -110,8 +110,7 @@ def isolines(
     >>> cartography.isolines(slope, "x", [-10, 0, 10], letters=1.0)["lines"].n_lines
     6
     """
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     letters = _check.positive("letters", letters)
     if letters < SMALLEST * mesh.length:
         expected = f"a height of at least {SMALLEST * mesh.length:g}"
@@ -289,8 +288,7 @@ def _lines_apart(
 ) -> Callable[[int, Array], Bools]:
     """Return the function that tells at which places a line other than a numbered one is near."""
     courses = list(pieces)
-    if not isinstance(clear_of, pv.PolyData | None):
-        raise TypeError(_check.message("clear_of", "a PolyData", _check.describe(clear_of)))
+    _check.instance("clear_of", clear_of, pv.PolyData | None, "a PolyData")
     if clear_of is not None and clear_of.n_lines:
         ids, ends = connectivity(clear_of.GetLines())
         flat = np.asarray(clear_of.points, dtype=np.float64)[ids, :2]

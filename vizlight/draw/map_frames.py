@@ -185,8 +185,7 @@ def has_bar(mesh: pv.DataSet) -> bool:
 
 def _checked(mesh: pv.DataSet, letters: float, up: Sequence[float]) -> tuple[float, Array]:
     """Return the height of letters, and the rows right and up in the picture."""
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     _check.coordinates("mesh", mesh.bounds)
     letters = _check.positive("letters", letters)
     x, y, _ = _check.unit("up", (*_check.vector("up", up, direction=True, n=2), 0.0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import itertools
 import os
@@ -361,18 +362,15 @@ def _filmed(
             frame(i, count)
             yield np.array(plotter.screenshot(return_img=True))
 
-    try:
+    with contextlib.closing(plotter):
         writer = _writer(path, fps, plotter.window_size)
         with progress(name, count, show=progress_bar) as report:
             return writer(_counted(pictures(), report, 0))
-    finally:
-        plotter.close()
 
 
-def _check_movie(path: object) -> Path:
+def _check_movie(path: str | Path) -> Path:
     """Return the path of a movie or of a sequence that can be written."""
-    if not isinstance(path, str | os.PathLike):
-        raise TypeError(_check.message("path", "the path of a file", _check.describe(path)))
+    _check.instance("path", path, str | os.PathLike, "the path of a file")
     return check_output(Path(path), FORMATS)
 
 
@@ -391,16 +389,13 @@ def _check_picture(picture: object, shape: tuple[int, ...]) -> Picture:
 def _check_mesh(frame: object) -> object:
     """Return a frame that is a mesh or a Panel."""
     mesh = frame.mesh if isinstance(frame, render.Panel) else frame
-    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
-        expected = "meshes or Panels, or pictures alone"
-        raise TypeError(_check.message("frames", expected, _check.describe(mesh)))
+    _check.instance("frames", mesh, Mesh, "meshes or Panels, or pictures alone")
     return frame
 
 
 def _drawing(picture: render.PlotterKeywords | None) -> render.PlotterKeywords:
     """Return the validated options of the pictures, except the camera."""
-    if not (picture is None or isinstance(picture, Mapping)):
-        raise TypeError(_check.message("picture", "a mapping", _check.describe(picture)))
+    _check.instance("picture", picture, Mapping | None, "a mapping")
     drawing: render.PlotterKeywords = {"size": (640, 480)}
     drawing.update(picture or {})
     if "camera" in drawing:

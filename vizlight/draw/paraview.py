@@ -278,10 +278,9 @@ def beside(path: Path) -> Path:
     return path.with_name(f"{path.stem}-paraview.vtp")
 
 
-def _named(name: str, value: object) -> str | None:
-    if value is not None and not isinstance(value, str):
-        expected = "the name of a point array that the data have in ParaView"
-        raise TypeError(_check.message(name, expected, _check.describe(value)))
+def _named(name: str, value: str | None) -> str | None:
+    expected = "the name of a point array that the data have in ParaView"
+    _check.instance(name, value, str | None, expected)
     return value
 
 

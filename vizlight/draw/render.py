@@ -99,8 +99,7 @@ class Panel:
 
     def __post_init__(self) -> None:
         _check.text("scalars", self.scalars, expected="the name of an array")
-        if not isinstance(self.title, str):
-            raise TypeError(_check.message("title", "a string", _check.describe(self.title)))
+        _check.instance("title", self.title, str, "a string")
 
 
 class PlotterKeywords(TypedDict, total=False):
@@ -311,10 +310,7 @@ def _check_panels(
     if not shown:
         raise _check.value_error("panels", "one mesh or more", "none")
     for panel in shown:
-        if not isinstance(panel.mesh, Mesh):
-            raise TypeError(
-                _check.message("panels", "PyVista meshes or Panels", _check.describe(panel.mesh))
-            )
+        _check.instance("panels", panel.mesh, Mesh, "PyVista meshes or Panels")
         check(panel.mesh)
         for mesh in all_blocks(panel.mesh):
             array = array_of(mesh, panel.scalars)
@@ -381,11 +377,8 @@ def save_png(
         partial file is left.
     """
     path = check_output(path, (".png",))
-    plotter = make_plotter(panels, **options)
-    try:
+    with contextlib.closing(make_plotter(panels, **options)) as plotter:
         return replace_file(path, partial(save_seen, plotter, path), doing="draw")
-    finally:
-        plotter.close()
 
 
 def pictures(
@@ -413,11 +406,8 @@ def pictures(
     """
     _check.iterable("sequence", sequence, "an iterable of meshes, Panels or lists of them")
     for panels in sequence:
-        plotter = make_plotter(panels, **options)
-        try:
+        with contextlib.closing(make_plotter(panels, **options)) as plotter:
             picture = np.array(plotter.screenshot(return_img=True))
-        finally:
-            plotter.close()
         yield picture
 
 
@@ -589,9 +579,7 @@ def check_plotter(plotter: object) -> None:
     ----------
     plotter : object
     """
-    if not isinstance(plotter, pv.BasePlotter):
-        expected, got = "a pyvista.Plotter", _check.describe(plotter)
-        raise TypeError(_check.message("plotter", expected, got))
+    _check.instance("plotter", plotter, pv.BasePlotter, "a pyvista.Plotter")
 
 
 def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
@@ -616,11 +604,9 @@ def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
     """
     check_plotter(plotter)
     path = check_output(path, IMAGES)
-    try:
+    with contextlib.closing(plotter):
         plotter.reset_camera_clipping_range()
         return replace_file(path, partial(save_seen, plotter, path), doing="draw")
-    finally:
-        plotter.close()
 
 
 #: Share of a picture below which data are hardly seen: a line as long as the picture is 1 / 800.

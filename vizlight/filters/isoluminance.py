@@ -256,9 +256,8 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> pv.MultiBlock:
     angle = options.feature_angle
     if angle is not None and normals.are_computed(mesh, light_options) and mesh.n_points:
         # Points are split below, and only arrays that the mesh carries go with them.
-        if not isinstance(options.tangents, str | None):
-            expected, got = "a name beside feature_angle=", _check.describe(options.tangents)
-            raise TypeError(_check.message("tangents", expected, got, "attach the array"))
+        expected, remedy = "a name beside feature_angle=", "attach the array"
+        _check.instance("tangents", options.tangents, str | None, expected, remedy=remedy)
         whole = mesh if isinstance(mesh, pv.PolyData) else blocks.outer_surface(mesh)[0]
         mesh = normals.split_edges(whole, angle)
     surface, triangles, used, ids = _surface(mesh)

@@ -12,7 +12,7 @@ import pyvista as pv
 from numpy.typing import ArrayLike
 
 from vizlight import _check, _progress
-from vizlight._types import VectorLike
+from vizlight._types import Given, VectorLike
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.nspace import projection
 from vizlight.mesh import blocks, records
@@ -54,11 +54,10 @@ class ProjectOptions(LightOptions):
         if not isinstance(positions, str) or not positions:
             got, remedy = _check.describe(positions), "attach it to the mesh and name it"
             raise TypeError(_check.message("positions", "the name of a point array", got, remedy))
-        turned: object = () if self.turned is None else self.turned
+        turned: Given = () if self.turned is None else self.turned
         turned = (turned,) if isinstance(turned, str) else turned
-        if not isinstance(turned, list | tuple):
-            expected = "the name of a point array, or a list of names"
-            raise TypeError(_check.message("turned", expected, _check.describe(turned)))
+        expected = "the name of a point array, or a list of names"
+        _check.instance("turned", turned, list | tuple, expected)
         distance = self.distance
         _check.set_fields(
             self,

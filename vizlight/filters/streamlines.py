@@ -75,10 +75,7 @@ class StreamlineOptions(LightOptions):
         super().__post_init__()
         _check.fields(self, _check.number, "step", low=1e-6, high=1e3)
         _check.fields(self, _check.boolean, "confined", optional=True)
-        surface: object = self.surface
-        if surface is not None and not isinstance(surface, pv.DataSet):
-            expected, got = "a PyVista surface", _check.describe(surface)
-            raise TypeError(_check.message("surface", expected, got))
+        _check.instance("surface", self.surface, pv.DataSet | None, "a PyVista surface")
         tangents: object = self.tangents
         if isinstance(tangents, list | tuple):
             names = _names_of(tangents, pair=self.line_field)

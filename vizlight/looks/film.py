@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -255,7 +256,7 @@ class _Flow:
 
 def _drawn(plotter: pv.Plotter, layers: Iterable[Layer | None]) -> Iterator[Picture]:
     """Yield the pictures of a plotter with each of some layers, and close it."""
-    try:
+    with contextlib.closing(plotter):
         for layer in layers:
             actor = None
             if layer is not None:
@@ -266,8 +267,6 @@ def _drawn(plotter: pv.Plotter, layers: Iterable[Layer | None]) -> Iterator[Pict
             yield np.array(plotter.screenshot(return_img=True))
             if actor is not None:
                 plotter.remove_actor(actor, render=False)
-    finally:
-        plotter.close()
 
 
 def step(look: vizlight.Look, path: Path) -> Step | None:

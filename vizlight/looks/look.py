@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import warnings
 from dataclasses import dataclass, replace
@@ -319,11 +320,8 @@ class Look:
         Figures of light are left out where no key of the picture explains its light, but for the
         lamps of a room, in which everybody has seen things.
         """
-        plotter = self.plotter()
-        try:
+        with contextlib.closing(self.plotter()) as plotter:
             figures: Legibility = plotter.vizlight.legibility()
-        finally:
-            plotter.close()
         return figures.without(*self._unexplained)
 
     @property
@@ -349,11 +347,8 @@ class Look:
 
         from PIL import Image
 
-        plotter = self.plotter()
-        try:
+        with contextlib.closing(self.plotter()) as plotter:
             picture = Image.fromarray(np.asarray(plotter.screenshot(return_img=True)))
-        finally:
-            plotter.close()
         data = io.BytesIO()
         picture.save(data, "PNG")
         text = base64.b64encode(data.getvalue()).decode()

@@ -57,8 +57,7 @@ def both_sides(
     >>> render.both_sides(pv.Sphere(), (0, -1, 0), names=("front", "back")).keys()
     ['front', 'back']
     """
-    if not isinstance(surface, pv.PolyData):
-        raise TypeError(_check.message("surface", "a surface", _check.describe(surface)))
+    _check.instance("surface", surface, pv.PolyData, "a surface")
     carried = surface.point_data.active_normals
     if carried is not None and carried.shape[1:] != (3,):
         raise _check.value_error("surface", "normals of 3 components", _check.describe(carried))

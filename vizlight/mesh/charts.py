@@ -75,8 +75,7 @@ def chart(mesh: pv.DataSet, /, projection: str | None = None) -> pv.DataSet:
     >>> str(europe.field_data["unit"][0])
     'metre'
     """
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     _check.coordinates("mesh", mesh.bounds)
     if not georeference.has_degrees(mesh):
         remedy = "pass it through vizlight.cartography.in_degrees"

@@ -111,8 +111,7 @@ def borders(surface: pv.PolyData, /) -> pv.PolyData:
 
 def _check_surface(surface: object) -> None:
     """Raise TypeError or ValueError unless a value is a surface without damaged cells."""
-    if not isinstance(surface, pv.PolyData):
-        raise TypeError(_check.message("surface", "a pyvista.PolyData", _check.describe(surface)))
+    _check.instance("surface", surface, pv.PolyData, "a pyvista.PolyData")
     check_whole(surface, "surface")
 
 

@@ -259,8 +259,7 @@ def in_degrees(mesh: DataSetT, /) -> DataSetT:
     >>> str(earth.field_data["unit"][0])
     'degree'
     """
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     _, _, south, north, _, _ = _check.coordinates("mesh", mesh.bounds)
     if mesh.n_points and not -90 <= south <= north <= 90:
         expected = "a mesh whose y is a latitude, from -90 to 90"

@@ -63,8 +63,7 @@ def globe(
     >>> cartography.globe(earth).n_open_edges
     0
     """
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     if not georeference.has_degrees(mesh):
         remedy = "pass it through vizlight.cartography.in_degrees"
         raise _check.value_error("mesh", "a map in degrees", "no such unit", remedy)

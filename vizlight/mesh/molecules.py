@@ -284,8 +284,7 @@ def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
     strands by places; Carson and Bugg, Journal of Molecular Graphics 4 (1986), for the turn of
     ribbons by the oxygens of peptides.
     """
-    if not isinstance(atoms, pv.PolyData):
-        raise TypeError(_check.message("atoms", "a pyvista.PolyData", _check.describe(atoms)))
+    _check.instance("atoms", atoms, pv.PolyData, "a pyvista.PolyData")
     needed = "chain", "atom_type"
     for name in (BACKBONE, *needed):
         rows = atoms.point_data.get(name)
@@ -354,8 +353,7 @@ def atoms_in(volume: pv.DataSet, /) -> pv.PolyData:
     """
     from vtkmodules.vtkDomainsChemistry import vtkPeriodicTable
 
-    if not isinstance(volume, pv.DataSet):
-        raise TypeError(_check.message("volume", "a pyvista.DataSet", _check.describe(volume)))
+    _check.instance("volume", volume, pv.DataSet, "a pyvista.DataSet")
     if not {NUMBERS, PLACES} <= {*volume.field_data.keys()}:
         expected = f"the volume of a cube file, with field arrays {NUMBERS!r} and {PLACES!r}"
         raise _check.value_error("volume", expected, f"{volume.field_data.keys()}")

@@ -59,8 +59,7 @@ def side_by_side(volume: pv.DataSet, name: str, /) -> pv.ImageData:
     TypeError, ValueError
         If it is no such volume, or has no such array.
     """
-    if not isinstance(volume, pv.ImageData | pv.StructuredGrid):
-        raise TypeError(_check.message("volume", "an image or a grid", _check.describe(volume)))
+    _check.instance("volume", volume, pv.ImageData | pv.StructuredGrid, "an image or a grid")
     _check.text("name", name, expected="the name of a point array")
     if name not in volume.point_data or volume.point_data[name].ndim != 1:
         expected = (

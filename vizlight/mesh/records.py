@@ -259,8 +259,7 @@ def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> 
     """
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
-    if not isinstance(name, str):
-        raise TypeError(_check.message("name", "the name of an array", _check.describe(name)))
+    _check.instance("name", name, str, "the name of an array")
     names = set()
     for block in blocks.all_blocks(mesh):
         # VTK takes no name with half of a surrogate pair.
@@ -281,12 +280,10 @@ _SMALL = 1 << 12
 
 def refuse_unnamed(name: str, value: object) -> None:
     """Raise TypeError for anything but a name of an array or None."""
-    if value is not None and not isinstance(value, str):
-        remedy = "attach the array to the mesh and pass its name"
-        got = _check.describe(value)
-        raise TypeError(_check.message(name, "the name of a point array", got, remedy))
+    expected, remedy = "the name of a point array", "attach the array to the mesh and pass its name"
+    _check.instance(name, value, str | None, expected, remedy=remedy)
     if value is not None:
-        _check.text(name, value, expected="the name of a point array")
+        _check.text(name, value, expected=expected)
 
 
 def averaged(mesh: DataSetT, *names: object) -> DataSetT:

@@ -56,8 +56,7 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     Isolines of the triangles are the borders between colours on them, since both are straight in
     each triangle.
     """
-    if not isinstance(mesh, Grid):
-        raise TypeError(_check.message("mesh", "a grid", _check.describe(mesh)))
+    _check.instance("mesh", mesh, Grid, "a grid")
     factor = _check.integer("factor", factor, low=1, high=64)
     sizes = tuple(size for size in mesh.dimensions if size > 1)
     if len(sizes) != 2:

@@ -221,11 +221,9 @@ class Boolean(Solid):
 
     def __post_init__(self) -> None:
         _check.choice("operation", self.operation, ("union", "intersection", "difference"))
-        operands: tuple[tuple[str, object], ...] = (("first", self.first), ("second", self.second))
-        for name, solid in operands:
-            if not isinstance(solid, Solid):
-                remedy = "make a solid of a closed mesh by vizlight.Polyhedron(mesh)"
-                raise TypeError(_check.message(name, EXPECTED, _check.describe(solid), remedy))
+        remedy = "make a solid of a closed mesh by vizlight.Polyhedron(mesh)"
+        for name, solid in (("first", self.first), ("second", self.second)):
+            _check.instance(name, solid, Solid, EXPECTED, remedy=remedy)
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Boolean:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""

@@ -91,8 +91,7 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     between surfaces that nearly touch may lie anywhere near them; for 30 closed forms its relative
     error was at most 4 times the tolerance, from 5e-4 to 2e-2. Source: Isoluminance, Further Work.
     """
-    if not isinstance(solid, Solid):
-        raise TypeError(_check.message("solid", EXPECTED, _check.describe(solid)))
+    _check.instance("solid", solid, Solid, EXPECTED)
     tolerance = _check.number("tolerance", tolerance, low=1e-6, high=0.1)
     if isinstance(solid, HalfSpace):
         expected, remedy = "a bounded solid", "intersect it with a bounded one"
