@@ -192,8 +192,7 @@ def _box_of(mesh: Given) -> Array:
     _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     if not mesh.n_points:
         raise _check.value_error("mesh", "a mesh with points", "none")
-    box: Array = _check.coordinates("mesh", mesh.bounds).reshape(3, 2)
-    return box
+    return _check.coordinates("mesh", mesh.bounds).reshape(3, 2)
 
 
 class _Eye:

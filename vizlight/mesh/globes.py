@@ -267,8 +267,7 @@ def centred(mesh: pv.DataSet, middle: float) -> pv.DataSet:
 def _surface(mesh: pv.DataSet) -> pv.PolyData:
     """Return the faces of a flat mesh, with its arrays and no more."""
     options = {"pass_pointid": False, "pass_cellid": False}
-    surface: pv.PolyData = mesh.extract_surface(algorithm="dataset_surface", **options)
-    return surface
+    return mesh.extract_surface(algorithm="dataset_surface", **options)
 
 
 def _whole(ball: pv.PolyData) -> pv.PolyData:

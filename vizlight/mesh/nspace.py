@@ -240,12 +240,11 @@ class Turning:
 
         def work(x: Array, p: Array) -> Array:
             x = x.reshape(-1, rows, n)
-            images: Array = (
+            return (
                 projection.push_frame(x, p, distance=self.distance, rtol=rtol)[0]
                 if space
                 else projection.push_forward(x, p, distance=self.distance)
             )
-            return images
 
         return _blocks(work, vectors, rows, 3, position)
 

@@ -385,8 +385,7 @@ def read(path: Path, time: object) -> pv.DataObject | None:
     times = times_of(reader)
     if reader is None or not times:
         check_single(path, time)
-        whole: pv.DataObject | None = None if reader is None else unchecked(reader)
-        return whole
+        return None if reader is None else unchecked(reader)
     index = chosen(times, time)
     mesh: pv.DataObject = marked(at(reader, times[index]), times, index)
     return mesh

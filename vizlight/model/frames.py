@@ -168,5 +168,4 @@ def as_frame(frame: ArrayLike) -> Array:
 
 def result(value: Array) -> Array:
     """Return an array unchanged, and a 0-dimensional array as a NumPy scalar."""
-    scalar: Array = value[()]
-    return scalar
+    return value[()]

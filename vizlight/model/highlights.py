@@ -463,8 +463,7 @@ def _angles(name: str, value: ArrayLike) -> Array:
     angle = _check.floats(name, value)
     if not np.all((angle >= 0) & (angle <= np.pi * (1 + 1e-6))):
         raise _check.value_error(name, "angles from 0 to pi, in radians", _check.describe(value))
-    clamped: Array = np.minimum(angle, angle.dtype.type(np.pi))
-    return clamped
+    return np.minimum(angle, angle.dtype.type(np.pi))
 
 
 def _powers(name: str, value: ArrayLike, low: float = 0.0, high: float = _check.LARGEST) -> Array:

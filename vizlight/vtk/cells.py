@@ -272,8 +272,7 @@ def mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
     """Return numbers of 64 bits in which each bit of the given ones changes half of the others."""
     x = (x ^ (x >> np.uint64(30))) * _MIX[0]
     x = (x ^ (x >> np.uint64(27))) * _MIX[1]
-    result: NDArray[np.uint64] = x ^ (x >> np.uint64(31))
-    return result
+    return x ^ (x >> np.uint64(31))
 
 
 def used(surface: vtkPolyData) -> Bools:

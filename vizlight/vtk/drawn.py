@@ -114,8 +114,7 @@ class DrawnCells:
     def __getitem__(self, rows: Rows, /) -> Indices:
         """Return the points at the corners of some parts, shape (M, s)."""
         if self._size == self._part:
-            parts: Indices = np.reshape(self._ids[:], (-1, self._part))[rows]
-            return parts
+            return np.reshape(self._ids[:], (-1, self._part))[rows]
         return self._some(*self._places(rows))
 
     def polygon(self, rows: Rows) -> Indices:

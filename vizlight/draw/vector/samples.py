@@ -178,5 +178,4 @@ def _bytes(plotter: pv.BasePlotter) -> Array:
     width, height = window.GetSize()
     pixels = vtkUnsignedCharArray()
     window.GetPixelData(0, 0, width - 1, height - 1, 0, pixels, 0)
-    picture: Array = as_numpy(pixels).reshape(height, width, 3)[::-1]
-    return picture
+    return as_numpy(pixels).reshape(height, width, 3)[::-1]

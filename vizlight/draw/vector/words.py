@@ -168,8 +168,7 @@ def _corners(actor: vtkCornerAnnotation, plotter: pv.BasePlotter) -> Iterator[Wo
 
 def _picture(plotter: pv.BasePlotter) -> Array:
     plotter.render()
-    picture: Array = np.array(plotter.screenshot(return_img=True))
-    return picture
+    return np.array(plotter.screenshot(return_img=True))
 
 
 def _fitted(lines: list[str], changed: Array, across: float, style: vtkTextProperty) -> Words:

@@ -120,5 +120,4 @@ def _over(corners: Array, z: Array, node: Indices) -> tuple[Bools, Array]:
 
 
 def _cross(a: Array, b: Array) -> Array:
-    result: Array = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return result
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
