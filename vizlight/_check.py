@@ -14,18 +14,14 @@ import re
 import sys
 import threading
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from types import UnionType
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vizlight import _words
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Array, Color, Foreign, Function, Indices, Raw, Vector
+from vizlight._types import Array, Color, Foreign, Function, Indices, Raw, Vector
 
 # pytest leaves the frames of this module out of tracebacks.
 __tracebackhide__ = True

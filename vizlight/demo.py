@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
@@ -12,19 +12,14 @@ import pyvista as pv
 from vizlight import files
 from vizlight.data import load_example
 from vizlight.draw import render
-from vizlight.draw.backends import choose_backend, window_class
+from vizlight.draw.backends import Backend, choose_backend, window_class
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.streamlines import streamlines
 from vizlight.observers.check import check
+from vizlight.observers.figures import Direction
 from vizlight.observers.legibility import legibility
 from vizlight.scene import Scene, View, presets
 from vizlight.shading import engine
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from vizlight.draw.backends import Backend
-    from vizlight.observers.figures import Direction
 
 EYE = (0.42, 1.0, 0.2)
 #: Distance between lines, and length of arrows, as shares of the globe's radius.

@@ -8,11 +8,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypedDict, get_args
+from typing import Literal, TypedDict, get_args
 
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
+from typing_extensions import Unpack
 from vtkmodules.vtkRenderingCore import vtkProp3D
 
 from vizlight import _check
@@ -48,9 +49,6 @@ from vizlight.mesh.polylines import backdrop
 from vizlight.shading.display import NO_DATA, displayable
 from vizlight.shading.results import DEFAULT_NAME, VALID
 from vizlight.vtk.polylines import has_lines_only
-
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
 
 __all__ = [
     "Backend",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 from numpy.typing import NDArray
 from vtkmodules.vtkCommonCore import vtkStringArray
 
@@ -19,9 +19,6 @@ from vizlight.scene.presets import AnyScene, preset_of, required_scene
 from vizlight.shading import engine
 from vizlight.shading.display import LEAST, Bytes, displayable, numerals, on_colors
 from vizlight.shading.options import Exponent
-
-if TYPE_CHECKING:
-    import pyvista as pv
 
 __all__ = ["color_below", "colors_of", "key", "key_picture", "question_of"]
 

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TypeVar
 
 from vizlight import _check
+from vizlight._types import Vector
 from vizlight._words import AXES, describe, message, numbers, value_error
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import TypeVar
-
-    from vizlight._types import Vector
-
-    T = TypeVar("T")
+T = TypeVar("T")
 
 PLANE = "NORMAL:OFFSET, 3 numbers and one, such as 0,0,1:2.5 or z:2.5"
 RANGE = "NAME:LOW:HIGH, such as Temp:300:600 or Temp:300:"

@@ -3,37 +3,31 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
 
 import vizlight
 from vizlight import _check, files
+from vizlight._types import Array, Foreign, Given, Keywords
 from vizlight.draw import movie
 from vizlight.looks import options as look_options
 from vizlight.looks.contents import Contents
 from vizlight.looks.options import READ
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.recipes import fields
-from vizlight.looks.recipes.drawing import GROUND, ON_BANDS, ON_GROUND, colors_in
+from vizlight.looks.recipes.drawing import GROUND, ON_BANDS, ON_GROUND, Layer, colors_in
 from vizlight.looks.steps import Step, in_order
 from vizlight.looks.wishes import Wishes
 from vizlight.mesh import meaning, series
 from vizlight.mesh.particles import Drift
 from vizlight.model import kernels
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
-
-    import pyvista as pv
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Foreign, Given, Keywords
-    from vizlight.looks.recipes.drawing import Layer
-
-    Picture = NDArray[np.uint8]
+Picture = NDArray[np.uint8]
 
 __all__ = ["save"]
 

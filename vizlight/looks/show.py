@@ -4,25 +4,20 @@ from __future__ import annotations
 
 import inspect
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pyvista as pv
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Foreign, Given, Keywords
 from vizlight.draw import keywords
+from vizlight.draw.live import LightAt
 from vizlight.draw.render import IMAGES
 from vizlight.files import check_output
 from vizlight.filters.sky import SKY
 from vizlight.looks.look import look
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import optional_scene
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Foreign, Given, Keywords
-    from vizlight.draw.live import LightAt
-    from vizlight.scene.presets import AnyScene
+from vizlight.scene.presets import AnyScene, optional_scene
 
 __all__ = ["plot"]
 

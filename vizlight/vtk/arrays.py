@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import (
+    vtkDataSetAttributes,
     vtkImageData,
     vtkPolyData,
     vtkRectilinearGrid,
@@ -27,9 +27,6 @@ from vizlight.vtk.cells import (
     dimensions,
     places,
 )
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
 
 
 class MadePoints:

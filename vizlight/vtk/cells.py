@@ -5,12 +5,12 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from vtkmodules.util import numpy_support
 from vtkmodules.vtkCommonCore import (
+    vtkAbstractArray,
     vtkDataArray,
     vtkPoints,
     vtkStringArray,
@@ -20,11 +20,14 @@ from vtkmodules.vtkCommonCore import (
 from vtkmodules.vtkCommonDataModel import (
     VTK_POLYHEDRON,
     vtkCellArray,
+    vtkCellData,
     vtkDataObject,
     vtkDataSet,
     vtkExplicitStructuredGrid,
+    vtkFieldData,
     vtkGenericCell,
     vtkImageData,
+    vtkPointData,
     vtkPointSet,
     vtkPolyData,
     vtkRectilinearGrid,
@@ -36,10 +39,6 @@ from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 from vizlight import _check, _pool
 from vizlight._types import AnyArray, Bools, Foreign, Indices, Raw, RawType
 from vizlight.model import kernels
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkCommonCore import vtkAbstractArray
-    from vtkmodules.vtkCommonDataModel import vtkCellData, vtkFieldData, vtkPointData
 
 #: Array in which VTK marks cells and points of other pieces, and hidden ones.
 GHOSTS = "vtkGhostType"
