@@ -18,6 +18,7 @@ from vtkmodules.vtkRenderingCore import vtkProp3D
 
 from vizlight import _check
 from vizlight._types import Array, ColorLike, Foreign, Keywords
+from vizlight.draw import strokes
 from vizlight.draw.backends import (
     Backend,
     BackendError,
@@ -32,14 +33,6 @@ from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on
 from vizlight.draw.scalar_bars import name_no_data
-from vizlight.draw.strokes import (
-    adapt,
-    directions,
-    enlarge,
-    lay_on_surfaces,
-    stroke_of,
-    widen,
-)
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
@@ -442,10 +435,10 @@ def _draw(
             shown.SetPoints(pv.vtk_points(_lifted(np.asarray(mesh.points), camera, size)))
         if fragments and _add_in_fragments(plotter, shown, panel.scalars, width):
             continue
-        stroke = stroke_of(mesh, width | {"render_lines_as_tubes": False})
+        stroke = strokes.stroke_of(mesh, width | {"render_lines_as_tubes": False})
         if stroke != Stroke():
             # VTK hands a shader no other vector of lines than their normals.
-            shown["vizlight along"] = directions(mesh).astype(np.float32)
+            shown["vizlight along"] = strokes.directions(mesh).astype(np.float32)
             shown.point_data.active_normals_name = "vizlight along"
         of_points = panel.scalars in mesh.point_data
         values: Foreign = array_of(mesh, panel.scalars)
@@ -470,10 +463,10 @@ def _draw(
             show_scalar_bar=False,
         )
         if stroke != Stroke():
-            widen(actor, stroke)
-            adapt(actor, plotter.renderer, stroke, of_data=panel.scalars != DEFAULT_NAME)
+            strokes.widen(actor, stroke)
+            strokes.adapt(actor, plotter.renderer, stroke, of_data=panel.scalars != DEFAULT_NAME)
         else:
-            enlarge(actor, plotter.renderer)
+            strokes.enlarge(actor, plotter.renderer)
         if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
             # The colours are drawn as they are; a scalar bar shows those before they were lit.
             table = unlit_colors(mesh, panel.scalars)
@@ -546,7 +539,7 @@ def canvas(
         with _window_of(backend, must_draw=_check.boolean("draws", draws)):
             plotter = pv.Plotter(off_screen=True, window_size=pixels, border=False)
     plotter.background_color = back
-    lay_on_surfaces(plotter.renderer)
+    strokes.lay_on_surfaces(plotter.renderer)
     # PyVista would look for the component among the entry points of all packages.
     from vizlight.draw import component  # noqa: F401
 

@@ -18,15 +18,7 @@ from vizlight import _check
 from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices, Rows
 from vizlight.model import line_fields
 from vizlight.shading.inputs import ArraySource
-from vizlight.vtk.cells import (
-    GHOSTS,
-    as_numpy,
-    as_vtk,
-    cell_arrays,
-    connectivity,
-    dimensions,
-    places,
-)
+from vizlight.vtk import cells as vtk_cells
 
 
 class MadePoints:
@@ -60,7 +52,7 @@ class GridPoints(MadePoints):
         # The extent of a part of an image need not begin at 0, but its origin is the place of index
         # 0.
         low = np.array(grid.GetExtent()[::2])
-        self._dimensions = dimensions(grid)
+        self._dimensions = vtk_cells.dimensions(grid)
         if isinstance(grid, vtkImageData):
             # It has the directions of the axes too, as of a scanner, beside origin and spacing.
             place = grid.GetIndexToPhysicalMatrix()
@@ -71,7 +63,7 @@ class GridPoints(MadePoints):
         else:
             # Coordinates are stored from the begin of the extent on.
             stored = (grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates())
-            axes = [as_numpy(axis).astype(np.float64) for axis in stored]
+            axes = [vtk_cells.as_numpy(axis).astype(np.float64) for axis in stored]
             self._place = lambda ijk: np.stack(
                 [axis[i] for axis, i in zip(axes, ijk.T, strict=True)], axis=1
             )
@@ -87,13 +79,13 @@ def points_of(mesh: Dataset, positions: str | None) -> ArraySource:
         return array_of(mesh, "positions", positions)
     if isinstance(mesh, vtkImageData | vtkRectilinearGrid):
         return GridPoints(mesh)
-    return places(mesh)
+    return vtk_cells.places(mesh)
 
 
 def named(data: vtkDataSetAttributes, name: str) -> AnyArray | None:
     """Return an array of the points or the cells of a dataset, None if it has none of the name."""
     array = data.GetAbstractArray(name)
-    return None if array is None else as_numpy(array)
+    return None if array is None else vtk_cells.as_numpy(array)
 
 
 def array_of(
@@ -242,12 +234,12 @@ def means(mesh: Dataset, rows: AnyArray) -> AnyArray:
     only: Foreign = mesh.NewInstance()
     only.CopyStructure(mesh)
     # Beside hidden points of a structured grid VTK's means are what stood in memory.
-    only.GetPointData().RemoveArray(GHOSTS)
-    only.GetCellData().AddArray(as_vtk(rows, "rows"))
+    only.GetPointData().RemoveArray(vtk_cells.GHOSTS)
+    only.GetCellData().AddArray(vtk_cells.as_vtk(rows, "rows"))
     mean = vtkCellDataToPointData()
     mean.SetInputData(only)
     mean.Update()
-    return as_numpy(mean.GetOutput().GetPointData().GetArray("rows"))
+    return vtk_cells.as_numpy(mean.GetOutput().GetPointData().GetArray("rows"))
 
 
 def at_points(mesh: Dataset, rows: AnyArray) -> AnyArray | None:
@@ -265,8 +257,8 @@ def at_points(mesh: Dataset, rows: AnyArray) -> AnyArray | None:
     kinds, number = np.unique(rows, axis=0, return_inverse=True)
     values = np.zeros((mesh.GetNumberOfPoints(), *rows.shape[1:]), rows.dtype)
     pairs, cell = [], 0
-    for cells in cell_arrays(_explicit(mesh)):
-        ids, ends = connectivity(cells)
+    for cells in vtk_cells.cell_arrays(_explicit(mesh)):
+        ids, ends = vtk_cells.connectivity(cells)
         of_cell = number.reshape(-1)[cell : cell + len(ends) - 1]
         pairs.append(ids * len(kinds) + np.repeat(of_cell, np.diff(ends)))
         cell += len(ends) - 1
