@@ -17,8 +17,6 @@ from vizlight.mesh import blocks
 from vizlight.vtk import letters
 from vizlight.vtk.letters import DIGIT
 
-__all__ = ["box_axes", "box_edges", "captions"]
-
 #: Length of ticks, their width, and distance of words from them, in heights of letters.
 TICK, LINE, GAP = 0.4, 0.07, 0.25
 #: Least length of an edge, and of the distance between its numbers, in heights of letters.

@@ -16,8 +16,6 @@ from vizlight import _check
 from vizlight._types import Array
 from vizlight.mesh.blocks import all_blocks
 
-__all__ = ["camera_on", "over_shoulder"]
-
 Mesh: TypeAlias = pv.DataSet | pv.MultiBlock
 #: Opening angle of a perspective camera, in degrees, which is VTK's default.
 VIEW_ANGLE = 30.0

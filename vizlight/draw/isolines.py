@@ -23,8 +23,6 @@ from vizlight.vtk.letters import DIGIT
 #: Pieces of isolines, shape (N, 2) each, with their levels.
 Pieces: TypeAlias = list[tuple[Array, float]]
 
-__all__ = ["isolines"]
-
 #: Room around a number within its line, and least distance between numbers, and what is added
 #: to that between numbers of one line, in heights of letters.
 GAP, APART, FAR = 0.35, 4.0, 14.0

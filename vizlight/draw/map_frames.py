@@ -20,8 +20,6 @@ from vizlight.mesh import blocks, charts, dates, georeference, meaning, polyline
 from vizlight.vtk import letters
 from vizlight.vtk.letters import DIGIT, union
 
-__all__ = ["frame", "graticule"]
-
 #: Width of lines, length of ticks, and distance of words from them, in heights of letters.
 LINE, TICK, GAP = 0.06, 0.35, 0.3
 #: Distance between words of the bottom, in widths of the widest, and of the left, in digits.

@@ -20,8 +20,6 @@ from vizlight.shading import engine
 from vizlight.shading.display import LEAST, Bytes, displayable, numerals, on_colors
 from vizlight.shading.options import Exponent
 
-__all__ = ["color_below", "colors_of", "key", "key_picture", "question_of"]
-
 #: Name of the field array with the words that stand beside a key.
 WORDS = "words"
 #: Names of the field arrays with the range of a bar of values, its levels, and the names of kinds.

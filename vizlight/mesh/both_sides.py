@@ -10,8 +10,6 @@ import pyvista as pv
 
 from vizlight import _check
 
-__all__ = ["both_sides"]
-
 #: Distance between both sides as a share of the width of one.
 APART = 0.08
 #: Width over height from which the second side is below the first.

@@ -17,8 +17,6 @@ from vizlight.mesh import blocks, georeference, globes, meaning, projections
 from vizlight.mesh.georeference import PROJECTION
 from vizlight.mesh.projections import Projection
 
-__all__ = ["chart"]
-
 #: Degrees over which a projection is differentiated.
 STEP = 1e-4
 #: Distance beyond the outline of a map that counts as on it, as a share of the map's size.

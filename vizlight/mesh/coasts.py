@@ -14,8 +14,6 @@ from vizlight._types import Array, Bools, Indices
 from vizlight.mesh import charts, georeference, globes, polylines
 from vizlight.vtk.cells import connectivity
 
-__all__ = ["coasts"]
-
 #: Farthest ends of a map from 0, in degrees.
 FARTHEST = 720.0
 

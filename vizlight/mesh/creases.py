@@ -12,8 +12,6 @@ from vizlight.vtk.corners import SHARP, sharp_edges
 from vizlight.vtk.memory import once
 from vizlight.vtk.normals import creases as share_of_creases
 
-__all__ = ["borders", "creases"]
-
 #: Size of connected edges, as a share of that of the surface, below which they are roughness.
 SHORT = 0.1
 #: The same of borders, below which they are cracks.

@@ -17,8 +17,6 @@ from vizlight.vtk.arrays import of_components
 from vizlight.vtk.cells import check_whole, connectivity
 from vizlight.vtk.polylines import has_lines_only
 
-__all__ = ["layer_of", "layers", "stretched", "surface_of", "warped", "with_vectors"]
-
 #: Share of the area of its voxels' faces below which the surface of a label is too thin to be
 #: smoothed: that of a ball is 0.6, of a bar two voxels wide 0.23.
 THIN = 0.25

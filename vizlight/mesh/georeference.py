@@ -16,13 +16,6 @@ from vizlight._types import Array, Foreign, Raw, Slice
 from vizlight.mesh import blocks, composites, fills, meaning, sections
 from vizlight.mesh.blocks import DataSetT
 
-__all__ = [
-    "DEGREE", "PROJECTION", "SUFFIXES", "UNIT", "exaggeration", "has_degrees", "in_degrees",
-    "in_metres", "is_earth", "is_map", "motion", "on_earth", "place_alike", "rates", "read",
-    "scale_to_one", "seem_degrees", "stretch", "unit_of",
-]  # fmt: skip
-
-
 #: Field array with the unit of x and y, and its value for longitude and latitude.
 UNIT, DEGREE = "unit", "degree"
 #: Field array with the text of a projection: of a map in degrees that in which its grid is

@@ -13,8 +13,6 @@ from vizlight._types import Array, Indices
 from vizlight.mesh import georeference, meaning, polylines, projections, records
 from vizlight.vtk.cells import connectivity, dimensions
 
-__all__ = ["globe"]
-
 #: Field array that says that a mesh is the earth as a ball around 0, with its radius.
 GLOBE = "globe"
 #: Degrees of a side of a line at most.

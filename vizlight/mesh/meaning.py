@@ -20,12 +20,6 @@ from vizlight.mesh import dates, records
 from vizlight.mesh.blocks import DataSetT
 from vizlight.vtk.arrays import stacked
 
-__all__ = [
-    "ANATOMY", "MEANING", "AxisScale", "Meaning", "along_grid", "attach", "components",
-    "is_photograph", "line", "metres", "of", "only_vectors", "speed", "usual_unit", "vectors",
-    "ways", "with_named",
-]  # fmt: skip
-
 #: Most distinct values of an array of kinds, such as materials or labels.
 MOST_KINDS = 12
 #: Name of vectors, names of components, or the two names of a cross field.

@@ -12,8 +12,6 @@ from vizlight._types import Array
 from vizlight.mesh import meaning
 from vizlight.vtk.cells import dimensions
 
-__all__ = ["is_stack", "side_by_side"]
-
 #: Most slices of a stack, fewest pixels along its slices as a multiple of their number, and least
 #: distance of slices in that of their pixels.
 MOST, PIXELS, APART = 24, 4, 1.5

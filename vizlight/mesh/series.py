@@ -15,20 +15,6 @@ from vizlight._types import Foreign
 from vizlight.mesh import blocks, dates, meaning
 from vizlight.vtk.arrays import vectors_of
 
-__all__ = [
-    "STEPS",
-    "TIME",
-    "NoStepError",
-    "Series",
-    "at",
-    "chosen",
-    "note",
-    "of",
-    "read",
-    "reader_of",
-    "times_of",
-]
-
 
 class Series:
     """Meshes with the same points at rising times.

@@ -9,9 +9,6 @@ from vizlight import _check
 from vizlight._types import Array
 from vizlight.mesh import blocks
 
-__all__ = ["smoothed"]
-
-
 #: Types of grids that may have one layer.
 Grid = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 

@@ -24,8 +24,6 @@ from vizlight.shading.results import arrays_of, digest, of_light, record_key, un
 from vizlight.vtk.cells import GHOSTS, as_vtk, check_whole
 from vizlight.vtk.parts import Part, part_of, uses_normals
 
-__all__ = ["Illuminate"]
-
 #: Options that are names of arrays: a pipeline has no others.
 _NAMES = ("tangents", "normals", "positions", "occlusion")
 #: Options that matter between points, give a mesh new ones, or need PyVista.

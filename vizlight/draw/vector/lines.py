@@ -20,8 +20,6 @@ from vizlight.geometry.contours.palette import nearest_colors
 from vizlight.geometry.contours.rings import SEEN, simplified
 from vizlight.vtk.polylines import cells_of, has_lines_only
 
-__all__ = ["Course", "Lines", "course_of", "lines_of", "strokes_of"]
-
 #: Distance of a line behind what is drawn, in its widths, up to which it is what is drawn.
 BEHIND = 1.5
 #: Ratio of two widths that are drawn as one, and difference from the ground that is rounding.

@@ -13,8 +13,6 @@ from vizlight._types import Array, Color
 from vizlight.draw.live import items
 from vizlight.draw.vector.files import ASCENT, DESCENT, LINE, Fill, Item, Words
 
-__all__ = ["words_of"]
-
 #: Shares of the width and of the height of a picture at which VTK writes texts, in its order.
 CORNERS = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (0.5, 0.0), (1.0, 0.5), (0.0, 0.5),
            (0.5, 1.0))  # fmt: skip

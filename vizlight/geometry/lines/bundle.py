@@ -28,8 +28,6 @@ from vizlight import _pool
 from vizlight._types import Array, Bools, Indices, Slice, VectorLike
 from vizlight.geometry import axial
 
-__all__ = ["Medium", "Targets", "directions", "medium"]
-
 #: Number of places that NumPy spreads at once.
 AT_ONCE = 1 << 19
 #: Place in a voxel of a line through the origin: there its hat functions have their mean over all

@@ -21,8 +21,6 @@ from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.height_field import Border, Bounds, Field
 from vizlight.model import kernels
 
-__all__ = ["inside_length", "shadow"]
-
 #: Represents infinity on a ray; unlike infinity it gives 0 when multiplied by 0.
 FAR = 1e300
 #: Processor time that a compiled ray saves compared with one of :func:`march`, in seconds.

@@ -27,9 +27,6 @@ from vizlight.geometry.solids.triangle_mesh import Mesh
 if TYPE_CHECKING:
     import manifold3d
 
-__all__ = ["tessellate"]
-
-
 #: Largest number of points of all primitives together.
 MOST = 400_000
 #: That number where finer facets are tried, which keep thin walls between surfaces: the points
