@@ -236,10 +236,8 @@ def means(mesh: Dataset, rows: AnyArray) -> AnyArray:
     # Beside hidden points of a structured grid VTK's means are what stood in memory.
     only.GetPointData().RemoveArray(vtk_cells.GHOSTS)
     only.GetCellData().AddArray(vtk_cells.as_vtk(rows, "rows"))
-    mean = vtkCellDataToPointData()
-    mean.SetInputData(only)
-    mean.Update()
-    return vtk_cells.as_numpy(mean.GetOutput().GetPointData().GetArray("rows"))
+    averaged = vtk_cells.result(vtkCellDataToPointData(), only)
+    return vtk_cells.as_numpy(averaged.GetPointData().GetArray("rows"))
 
 
 def at_points(mesh: Dataset, rows: AnyArray) -> AnyArray | None:
@@ -282,10 +280,7 @@ def _explicit(mesh: Dataset) -> Dataset:
         return mesh
     only: Foreign = mesh.NewInstance()
     only.CopyStructure(mesh)
-    append = vtkAppendFilter()
-    append.SetInputData(only)
-    append.Update()
-    explicit: vtkUnstructuredGrid = append.GetOutput()
+    explicit: vtkUnstructuredGrid = vtk_cells.result(vtkAppendFilter(), only)
     return explicit
 
 

@@ -215,6 +215,20 @@ def finite_points(points: Raw) -> Bools:
     return np.asarray(finite.all(axis=1), dtype=np.bool_)
 
 
+def new_cells(ids: AnyArray, ends: AnyArray) -> vtkCellArray:
+    """Return cells by their corners, one cell after the other, and where each begins."""
+    cells = vtkCellArray()
+    cells.SetData(as_vtk(ends), as_vtk(ids))
+    return cells
+
+
+def result(take: Foreign, mesh: Foreign) -> Foreign:
+    """Return the output of a filter of VTK for a mesh."""
+    take.SetInputData(mesh)
+    take.Update()
+    return take.GetOutput()
+
+
 def bare_faces(surface: vtkPolyData, kept: Bools | None = None) -> vtkPolyData:
     """Return the points and the strips of a surface, and all or some of its polygons."""
     polys = surface.GetPolys()
@@ -222,8 +236,7 @@ def bare_faces(surface: vtkPolyData, kept: Bools | None = None) -> vtkPolyData:
         ids, offsets = connectivity(polys)
         size = np.diff(offsets)
         ends = np.concatenate([[0], np.cumsum(size[kept])])
-        polys = vtkCellArray()
-        polys.SetData(as_vtk(ends), as_vtk(ids[np.repeat(kept, size)]))
+        polys = new_cells(ids[np.repeat(kept, size)], ends)
     bare = vtkPolyData()
     bare.SetPoints(surface.GetPoints())
     bare.SetStrips(surface.GetStrips())
@@ -295,9 +308,7 @@ def triangles(surface: vtkPolyData) -> Indices:
     split = vtkTriangleFilter()
     split.PassVertsOff()
     split.PassLinesOff()
-    split.SetInputData(surface)
-    split.Update()
-    corners = connectivity(split.GetOutput().GetPolys())[0].reshape(-1, 3)
+    corners = connectivity(result(split, surface).GetPolys())[0].reshape(-1, 3)
     # VTK's are twice as long, and go with the filter.
     return corners.astype(np.int32 if surface.GetNumberOfPoints() < 2**31 else np.intp)
 

@@ -708,12 +708,11 @@ def _of_cloud(mesh: Dataset, view: View | None) -> Sided:
     from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
 
     estimate = vtkPCANormalEstimation()
-    estimate.SetInputData(mesh)
     estimate.SetSampleSize(NEIGHBOURS)
     # A plane has no side: each takes the side of a neighbour which was turned before.
     estimate.SetNormalOrientationToGraphTraversal()
-    estimate.Update()
-    unit = np.array(vtk_cells.as_numpy(estimate.GetOutput().GetPointData().GetNormals()))
+    normals = vtk_cells.result(estimate, mesh).GetPointData().GetNormals()
+    unit = np.array(vtk_cells.as_numpy(normals))
     unit[~np.isfinite(unit).all(axis=1)] = 0
     # Where an eye is known it decides, point by point: no side of a scan is the outer one for sure.
     if view is not None:
@@ -785,10 +784,7 @@ def _wound(surface: vtkPolyData, shape: orientation.SurfaceShape, *, as_wound: b
     """
     if as_wound or shape.alike:
         return surface
-    rewind = _orienter()
-    rewind.SetInputData(surface)
-    rewind.Update()
-    output: vtkPolyData = rewind.GetOutput()
+    output: vtkPolyData = vtk_cells.result(_orienter(), surface)
     if not _same_cells(surface, output):
         shape.rewind(output)
     return output
