@@ -112,7 +112,6 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
     >>> maps.heights(-50.0, 1200.0).scalar_range
     (-50.0, 1200.0)
     """
-    import numpy as np
     import pyvista as pv
 
     low, high = _check.number("low", low), _check.number("high", high)
@@ -290,7 +289,6 @@ def kinds(
     >>> maps.kinds([1, 7, 44]).scalar_range
     (0.5, 44.5)
     """
-    import numpy as np
     import pyvista as pv
 
     names = values if isinstance(values, Mapping) else {}

@@ -103,8 +103,6 @@ def key(
     >>> str(disc.field_data["words"][0])
     'direction on the screen'
     """
-    import pyvista as pv
-
     scene = required_scene(scene)
     topic = question_of(scene) if question is None else question
     steps: list[float] = []
@@ -170,8 +168,6 @@ def color_below(table: pv.LookupTable) -> Array | None:
 
 def _with_swatch(bar: pv.PolyData, color: Array) -> pv.PolyData:
     """Return a bar with a swatch before its lower end."""
-    import pyvista as pv
-
     right = -1 - GAP
     x, y = np.array([right - SWATCH, right, right, right - SWATCH]), BAR * np.array([-1, -1, 1, 1])
     swatch = pv.PolyData(np.stack([x, y, 0 * x], axis=1), [4, 0, 1, 2, 3])
@@ -196,8 +192,6 @@ def _names_of(cmap: ColorMap) -> list[str]:
 
 def annotated(cmap: ColorMap) -> list[tuple[float, str]]:
     """Return the numbers and the names of the kinds of a lookup table, in their order."""
-    import pyvista as pv
-
     if not isinstance(cmap, pv.LookupTable):
         return []
     count = cmap.GetNumberOfAnnotatedValues()

@@ -292,8 +292,6 @@ def shadows_of(
     mesh: pv.DataSet, options: Mapping[str, Given], scene: Scene
 ) -> tuple[Shadows, ReliefOptions]:
     """Return the shadows that a record tells of, before they are cast, and their options."""
-    from vizlight.filters.relief_shadow import ReliefOptions, Shadows
-
     _refuse_described("relief_shadow", options)
     relief_options = ReliefOptions.of({**options, "lit": True, "components": False})
     with warnings.catch_warnings():
