@@ -27,7 +27,7 @@ from vizlight._types import Array, Color, Foreign, Function, Indices, Raw, Vecto
 __tracebackhide__ = True
 
 describe, message, one_of = _words.describe, _words.message, _words.one_of
-value_error = _words.value_error
+value_error, type_error = _words.value_error, _words.type_error
 
 #: Largest intensity, coefficient or power: the product of three of them fits float32.
 LARGEST = 1e9
@@ -107,7 +107,7 @@ def boolean(name: str, value: object, *, expected: str = "True or False") -> boo
     """
     if isinstance(value, bool | np.bool_) or (isinstance(value, int) and value in (0, 1)):
         return bool(value)
-    raise TypeError(message(name, expected, describe(value)))
+    raise type_error(name, expected, value)
 
 
 def flags(frozen: Foreign) -> None:
@@ -142,10 +142,9 @@ def reals(name: str, value: object) -> Raw:
     try:
         array = np.asarray(unmasked(value))
     except ValueError as error:
-        expected = "numbers in rows of equal length"
-        raise TypeError(message(name, expected, describe(value))) from error
+        raise type_error(name, "numbers in rows of equal length", value) from error
     if array.dtype.kind not in "iubf":
-        raise TypeError(message(name, "real numbers", describe(value)))
+        raise type_error(name, "real numbers", value)
     holds(name, array.shape)
     return array
 
@@ -268,7 +267,7 @@ def number(name: str, value: object, *, low: float = -math.inf, high: float = ma
     value = _scalar(value)
     # To Python True is the number 1; as an option it is a mistake.
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise TypeError(message(name, "a number", describe(value)))
+        raise type_error(name, "a number", value)
     try:
         result = float(value)
     except OverflowError:  # an integer or a fraction beyond the largest double
@@ -290,7 +289,7 @@ def integer(name: str, value: object, *, low: int, high: int = LARGEST_INTEGER) 
     """Return ``value`` as an int in the closed range [low, high]."""
     value = _scalar(value)
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
-        raise TypeError(message(name, "an integer", describe(value)))
+        raise type_error(name, "an integer", value)
     result = int(value)
     if not low <= result <= high:
         expected = f"of at least {low}" if result < low else f"of at most {high}"
@@ -308,7 +307,7 @@ def _scalar(value: object) -> object:
 def text(name: str, value: object, *, expected: str = "text") -> str:
     """Return a string without a null character, at which VTK and files end names."""
     if not isinstance(value, str):
-        raise TypeError(message(name, expected, describe(value)))
+        raise type_error(name, expected, value)
     # Half of a surrogate pair has no bytes in UTF-8, in which VTK takes names.
     if "\0" in value or value != value.encode("utf-8", "ignore").decode():
         raise value_error(name, f"{expected} of valid characters", describe(value))
@@ -320,7 +319,7 @@ def path(name: str, value: object) -> Path:
     expected = "the path of a file"
     file = os.fspath(value) if isinstance(value, str | os.PathLike) else value
     if not isinstance(file, str):
-        raise TypeError(message(name, expected, describe(value)))
+        raise type_error(name, expected, value)
     try:
         # Bytes that are no characters of the locale name files all the same.
         valid = "\0" not in os.fsencode(file).decode("latin-1")
@@ -338,14 +337,14 @@ def iterable(name: str, value: object, expected: str) -> None:
     # An array without axes has the method ``__iter__``, but nothing to iterate over.
     flat = getattr(value, "ndim", 1) != 0
     if isinstance(value, str | bytes | dict) or not (flat and hasattr(value, "__iter__")):
-        raise TypeError(message(name, expected, describe(value), "put a single one in a list"))
+        raise type_error(name, expected, value, "put a single one in a list")
 
 
 def function(name: str, value: object, *, optional: bool = False) -> None:
     """Check that a value can be called; with ``optional=True`` None is allowed too."""
     if not (callable(value) or (optional and value is None)):
         expected = "a function" + (" or None" if optional else "")
-        raise TypeError(message(name, expected, describe(value)))
+        raise type_error(name, expected, value)
 
 
 def vector(name: str, value: object, *, direction: bool = False, n: int | None = None) -> Vector:
@@ -437,7 +436,7 @@ def instance(
         expected = f"a {where}{kind.__name__}" + (" or None" if optional else "")
         if not remedy and callable(value) and hasattr(value, "__name__"):
             remedy = f"call it: {value.__name__}()"
-    raise TypeError(message(name, expected, describe(value), remedy))
+    raise type_error(name, expected, value, remedy)
 
 
 def set_fields(frozen: object, **values: object) -> None:

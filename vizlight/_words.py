@@ -32,6 +32,11 @@ def value_error(name: str, expected: str, got: object, remedy: str = "") -> Valu
     return ValueError(message(name, expected, got, remedy))
 
 
+def type_error(name: str, expected: str, value: object, remedy: str = "") -> TypeError:
+    """Return the error of a value of a wrong type, which the :func:`message` describes."""
+    return TypeError(message(name, expected, describe(value), remedy))
+
+
 def one_of(names: Sequence[str]) -> str:
     """Return the names that the user may choose from, as part of an error message."""
     return f"one of {list(names)}" if names else "but the mesh has none"

@@ -271,8 +271,7 @@ def over_shoulder(camera: pv.Camera) -> tuple[float, float, float]:
         Direction, not of unit length.
     """
     if not hasattr(camera, "GetDirectionOfProjection"):
-        expected = "a pyvista.Camera or vtkCamera"
-        raise TypeError(_check.message("camera", expected, _check.describe(camera)))
+        raise _check.type_error("camera", "a pyvista.Camera or vtkCamera", camera)
     back = -np.array(camera.GetDirectionOfProjection())
     right = np.cross(np.array(camera.GetViewUp()), back)
     right /= np.linalg.norm(right)

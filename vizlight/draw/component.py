@@ -334,7 +334,7 @@ class Component:
         size = _check.number("size", size, low=0.02, high=1.0)
         if not isinstance(mesh, pv.PolyData) or WORDS not in mesh.field_data:
             expected = "a mesh that vizlight.presets.key returned"
-            raise TypeError(_check.message("mesh", expected, _check.describe(mesh)))
+            raise _check.type_error("mesh", expected, mesh)
         lying = _check.boolean("lying", lying)
         if lying and len(mesh.field_data[WORDS]) == 1:
             expected = "False for a key that is a disc"
@@ -592,7 +592,7 @@ class Component:
     def _lit_by_us(self, actor: vtkActor) -> Live:
         expected = "one of plotter.vizlight.add_mesh"
         if not hasattr(actor, "GetAddressAsString"):
-            raise TypeError(_check.message("actor", expected, _check.describe(actor)))
+            raise _check.type_error("actor", expected, actor)
         live = self._live_of(actor)
         if live is None:
             raise _check.value_error("actor", expected, _check.describe(actor))

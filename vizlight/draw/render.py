@@ -323,7 +323,7 @@ def _check_options(
 ) -> tuple[float, float]:
     """Check options that are passed on to PyVista, whose messages do not name them; return clim."""
     if camera is not None and not hasattr(camera, "GetPosition"):
-        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
+        raise _check.type_error("camera", "a pyvista.Camera", camera)
     low, high = _check.limits("clim", clim)
     if low == high:
         raise _check.value_error("clim", "a lower and a higher number", clim)

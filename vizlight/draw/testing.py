@@ -229,8 +229,7 @@ def _pixels(name: str, picture: Picture) -> Pixels:
     except ValueError:  # rows of unequal length
         array = np.zeros(0)
     if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] not in (3, 4) or not array.size:
-        shape = "a plotter, a path or bytes of shape (h, w, 3)"
-        raise TypeError(_check.message(name, shape, _check.describe(picture)))
+        raise _check.type_error(name, "a plotter, a path or bytes of shape (h, w, 3)", picture)
     pixels: Pixels = array[..., :3]
     return pixels
 

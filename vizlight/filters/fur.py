@@ -276,7 +276,7 @@ def grow(
     # them.
     if options.feature_angle is not None and np.asarray(options.length, dtype=object).ndim:
         expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
-        raise TypeError(_check.message("length", expected, _check.describe(options.length), remedy))
+        raise _check.type_error("length", expected, options.length, remedy)
     surface = records.averaged(blocks.surface(surface, "surface"), options.length, options.toward)
     surface = split_where_computed(surface, options.feature_angle)
     skin = with_normals(surface, onlooker(scene), options.feature_angle)

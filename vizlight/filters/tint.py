@@ -249,8 +249,7 @@ def values_of(
             if array.dtype.kind == "c"
             else "np.unique(words, return_inverse=True)[1]"
         )
-        remedy = f"attach numbers, such as {way}"
-        raise TypeError(_check.message("scalars", "real numbers", _check.describe(array), remedy))
+        raise _check.type_error("scalars", "real numbers", array, f"attach numbers, such as {way}")
     return array
 
 

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from vizlight import _check
 from vizlight._types import Vector
-from vizlight._words import AXES, describe, message, numbers, value_error
+from vizlight._words import AXES, describe, numbers, type_error, value_error
 
 T = TypeVar("T")
 
@@ -104,7 +104,7 @@ def several(name: str, value: object, read: Callable[[str, object], T]) -> list[
 def _parts(name: str, value: object, count: int, expected: str) -> tuple[object, ...]:
     """Return the parts of a tuple or a list of some length."""
     if not isinstance(value, tuple | list):
-        raise TypeError(message(name, expected, describe(value)))
+        raise type_error(name, expected, value)
     if len(value) != count:
         raise value_error(name, expected, describe(value))
     return tuple(value)

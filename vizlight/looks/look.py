@@ -14,7 +14,7 @@ import pyvista as pv
 
 from vizlight import _check, files
 from vizlight._questions import QUESTIONS
-from vizlight._words import message, one_of, value_error
+from vizlight._words import one_of, type_error, value_error
 from vizlight.draw.render import IMAGES, BackendError
 from vizlight.draw.vector import VECTORS
 from vizlight.looks import film, map_parts, together
@@ -596,7 +596,7 @@ def read_steps(data: object, wishes: Wishes) -> list[Step]:
             "pyvista.StructuredGrid(x, y, z) of a surface; then mesh['name'] = values"
         )
         remedy = remedy if hasattr(data, "__array__") else ""
-        raise TypeError(message("data", expected, _check.describe(data), remedy))
+        raise type_error("data", expected, data, remedy)
     if keywords:
         name, value = next(iter(keywords.items()))
         expected = "no such option beside a mesh, which is read already"

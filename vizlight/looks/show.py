@@ -95,7 +95,7 @@ def plot(
     keywords.sorted_out("mesh.vizlight.plot", options, scene, more=named)
     size = None if window_size is None else _size(window_size)
     if camera is not None and not hasattr(camera, "GetPosition"):
-        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
+        raise _check.type_error("camera", "a pyvista.Camera", camera)
     if isinstance(screenshot, str | Path):
         screenshot = check_output(screenshot, IMAGES)
     if jupyter_backend is not None:

@@ -57,8 +57,7 @@ class CasterOptions(Options):
             occluders = [occluders]
         # Text and arrays can be iterated, too, but are no meshes.
         if isinstance(occluders, str | np.ndarray) or not isinstance(occluders, Iterable):
-            expected = "a closed surface or several"
-            raise TypeError(_check.message("occluders", expected, _check.describe(occluders)))
+            raise _check.type_error("occluders", "a closed surface or several", occluders)
         _check.set_fields(self, occluders=list(occluders))
         if self.thickness is not None:
             _check.positive("thickness", self.thickness)

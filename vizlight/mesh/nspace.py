@@ -394,7 +394,7 @@ def _plane(hyperplane: object, n: int) -> tuple[Array, float]:
     """Return the unit normal of a hyperplane and its offset."""
     expected = f"(normal of {n} components, offset)"
     if not isinstance(hyperplane, tuple | list) or len(hyperplane) != 2:
-        raise TypeError(_check.message("hyperplane", expected, _check.describe(hyperplane)))
+        raise _check.type_error("hyperplane", expected, hyperplane)
     normal = np.array(_check.vector("hyperplane", hyperplane[0], direction=True))
     if len(normal) != n:
         raise _check.value_error("hyperplane", expected, f"a normal of {len(normal)} components")

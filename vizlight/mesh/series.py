@@ -59,7 +59,7 @@ class Series:
             times = _own_times(source) if times is None else times
         else:
             expected = "meshes, a reader with time values, or the path of its file"
-            raise TypeError(_check.message("series", expected, _check.describe(source)))
+            raise _check.type_error("series", expected, source)
         #: Times of the steps, shape (S,).
         self.times = _check.floats("times", times).astype(np.float64)
         if self._meshes is not None and self.times.shape != (len(self._meshes),):
@@ -93,7 +93,7 @@ class Series:
             mesh = mesh[0] if len(mesh) == 1 else blocks.joined(mesh)
         name = self.name(step)
         if not isinstance(mesh, pv.DataSet) or not mesh.n_cells:
-            raise TypeError(_check.message(name, "a mesh with cells", _check.describe(mesh)))
+            raise _check.type_error(name, "a mesh with cells", mesh)
         if self._first is None:
             self._first = mesh if step == 0 else self.mesh(0)
         first = self._first

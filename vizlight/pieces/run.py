@@ -308,7 +308,7 @@ def _check_options(filter_name: str, options: Keywords, contour: str | None, gho
     for name in ("tangents", "normals", "conditioned"):
         if options.get(name) is not None and not isinstance(options[name], str | bool):
             expected = "the name of a point array that every piece has"
-            raise TypeError(_check.message(name, expected, _check.describe(options[name])))
+            raise _check.type_error(name, expected, options[name])
     light_options = LightOptions.of(options)
     if light_options.facing == "outward":
         remedy = "what is closed faces outward by facing='auto'"

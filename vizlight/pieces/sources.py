@@ -213,8 +213,7 @@ class Slabs:
         origin: VectorLike = (0.0, 0.0, 0.0),
     ) -> None:
         if not isinstance(arrays, Mapping) or not arrays:
-            got = _check.describe(arrays)
-            raise TypeError(_check.message("arrays", "a dict of point arrays by name", got))
+            raise _check.type_error("arrays", "a dict of point arrays by name", arrays)
         shapes = {}
         self.bytes_per_node = 0.0
         for name, array in arrays.items():

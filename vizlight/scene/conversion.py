@@ -74,9 +74,7 @@ def to_property(values: Keywords, *, lights: Lights, view: AnyView, model: str) 
 def property_values(source: vtkProperty, *, lights: Lights, view: AnyView, model: str) -> Keywords:
     """Return the fields of a property's material; see :meth:`vizlight.Material.from_property`."""
     if not hasattr(source, "GetSpecularPower"):
-        raise TypeError(
-            _check.message("source", "a pyvista.Property or vtkProperty", _check.describe(source))
-        )
+        raise _check.type_error("source", "a pyvista.Property or vtkProperty", source)
     lamps, view = _check_lights(lights, view), as_view(view)
     shown = power = float(source.GetSpecularPower())
     if _check_model(model) != vtk_model(lamps):
@@ -118,7 +116,7 @@ def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
     several = isinstance(lights, Iterable) and getattr(lights, "ndim", 1) > 0
     if isinstance(lights, str) or not (several or isinstance(lights, Light) or _is_vtk(lights)):
         expected = "a vizlight.Light, a pyvista.Light or a sequence of them"
-        raise TypeError(_check.message("lights", expected, _check.describe(lights)))
+        raise _check.type_error("lights", expected, lights)
     converted: list[Light] = []
     for light in lights if isinstance(lights, Iterable) else [lights]:
         if _is_vtk(light):

@@ -346,4 +346,4 @@ def _view(eye: Eye) -> View | None:
         return as_view(cast("vtkCamera", eye) if of_plotter is None else of_plotter)
     except TypeError:
         expected = "a vizlight.View, a pyvista.Camera, a pyvista.Plotter or None"
-        raise TypeError(_check.message("view", expected, _check.describe(eye))) from None
+        raise _check.type_error("view", expected, eye) from None

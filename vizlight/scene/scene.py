@@ -251,9 +251,7 @@ class Scene:
         """
         renderer = getattr(plotter, "renderer", None)
         if renderer is None or not hasattr(renderer, "GetLights"):
-            raise TypeError(
-                _check.message("plotter", "a pyvista.Plotter", _check.describe(plotter))
-            )
+            raise _check.type_error("plotter", "a pyvista.Plotter", plotter)
         # To read it makes PyVista set a camera that is not set yet, as its show does.
         camera, own_view = plotter.camera, "view" not in fields
         seen = View.from_camera(camera)
@@ -289,7 +287,7 @@ def _of_actor(
     """Return the material of an actor; where data colour it, without a colour of its own."""
     mapper = actor.GetMapper() if hasattr(actor, "GetMapper") else None
     if mapper is None or not hasattr(actor, "GetProperty"):
-        raise TypeError(_check.message("actor", "a pyvista.Actor", _check.describe(actor)))
+        raise _check.type_error("actor", "a pyvista.Actor", actor)
     actor_property = drawn = actor.GetProperty()
     if mapper.GetScalarVisibility():
         drawn = type(actor_property)()
@@ -310,7 +308,7 @@ def _fields(
     names = [field.name for field in dataclasses.fields(kind)]
     expected = f"a dict of {', '.join(names)}"
     if not isinstance(values, Mapping):
-        raise TypeError(_check.message(name, expected, _check.describe(values)))
+        raise _check.type_error(name, expected, values)
     for key in values:
         if key not in names:
             raise _check.value_error(name, expected, repr(key))

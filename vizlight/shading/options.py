@@ -108,7 +108,7 @@ class Bundle:
         depth = _check.number("depth", self.depth, low=1e-6, high=1e6)
         if self.lines is not None and not hasattr(self.lines, "GetDataObjectType"):
             expected = "a PyVista mesh of lines, or None"
-            raise TypeError(_check.message("Bundle(lines=)", expected, _check.describe(self.lines)))
+            raise _check.type_error("Bundle(lines=)", expected, self.lines)
         _check.set_fields(self, depth=depth, grid=grid)
 
 

@@ -61,7 +61,7 @@ def check(levels: object) -> None:
     """
     expected = "a count (int), luminance values (a sequence) or an allowed error (float)"
     if isinstance(levels, bool | str) or levels is None:
-        raise TypeError(_check.message("levels", expected, _check.describe(levels)))
+        raise _check.type_error("levels", expected, levels)
     error = allowed(levels)
     if isinstance(levels, numbers.Integral):
         if not 1 <= int(levels) <= MOST:

@@ -218,9 +218,9 @@ def _domain(domain: object, closed: object) -> tuple[Array, tuple[bool, ...] | N
     try:
         wraps = np.asarray(closed)
     except ValueError as error:
-        raise TypeError(_check.message("closed", expected, _check.describe(closed))) from error
+        raise _check.type_error("closed", expected, closed) from error
     if wraps.dtype.kind not in "biu" or not np.isin(wraps, (0, 1)).all():
-        raise TypeError(_check.message("closed", expected, _check.describe(closed)))
+        raise _check.type_error("closed", expected, closed)
     if wraps.shape not in ((), (len(ends),)):
         raise _check.value_error("closed", expected, _check.describe(closed))
     return ends, tuple(bool(wrap) for wrap in np.broadcast_to(wraps, len(ends)))
@@ -298,7 +298,7 @@ def _exact(tangents: TangentFunction, u: Sequence[Array], n: int) -> Array:
     try:
         rows = list(returned)
     except TypeError as error:
-        raise TypeError(_check.message("tangents", expected, _check.describe(returned))) from error
+        raise _check.type_error("tangents", expected, returned) from error
     if len(rows) != len(u):
         raise _check.value_error("tangents", expected, len(rows))
     return np.stack([_values(lambda *_, row=row: row, u, n, "tangents") for row in rows], axis=1)
@@ -318,7 +318,7 @@ def _rows(
         # Constant coordinates may be given as numbers.
         rows = [np.broadcast_to(np.asarray(row), u[0].shape) for row in returned]
     except (TypeError, ValueError) as error:
-        raise TypeError(_check.message(name, expected, _check.describe(returned))) from error
+        raise _check.type_error(name, expected, returned) from error
     if len(rows) != n:
         raise _check.value_error(name, expected, len(rows))
     # A complex result is right only where a parameter is complex: its kind then joins the others.

@@ -120,7 +120,7 @@ def _special_orthogonal(n: int, value: object) -> Array:
     try:
         matrix = _check.floats("rotation", value).astype(np.float64)
     except TypeError as error:
-        raise TypeError(_check.message("rotation", expected, _check.describe(value))) from error
+        raise _check.type_error("rotation", expected, value) from error
     if matrix.shape != (n, n):
         raise _check.value_error("rotation", expected, f"shape {matrix.shape}")
     if not np.all(np.isfinite(matrix)):
@@ -149,7 +149,7 @@ def _axes(plane: str | Sequence[int], n: int) -> tuple[int, int]:
         try:
             axes = tuple(_check.integer("plane", axis, low=0) for axis in plane)
         except TypeError as error:
-            raise TypeError(_check.message("plane", expected, _check.describe(plane))) from error
+            raise _check.type_error("plane", expected, plane) from error
     if len(axes) != 2 or axes[0] == axes[1] or not all(0 <= axis < n for axis in axes):
         raise _check.value_error("plane", expected, repr(plane))
     return axes[0], axes[1]

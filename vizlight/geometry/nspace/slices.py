@@ -150,7 +150,7 @@ def mean_frame(frame: ArrayLike, shares: Foreign, /) -> Array:
     sparse: bool = scipy.sparse.issparse(shares)
     if not sparse or shares.dtype.kind not in "iuf":
         expected = "a sparse array of real numbers"
-        raise TypeError(_check.message("shares", expected, _check.describe(shares)))
+        raise _check.type_error("shares", expected, shares)
     parts = scipy.sparse.csr_array(shares)
     if parts.shape[1] != count:
         expected = f"a matrix of {count} columns, one per point of frame"

@@ -107,7 +107,7 @@ class Polyhedron(Primitive):
         elif triangles is None:
             expected = "a pyvista.PolyData, or an array of points and one of triangles"
             remedy = "pass mesh.extract_surface()"
-            raise TypeError(_check.message("points", expected, _check.describe(points), remedy))
+            raise _check.type_error("points", expected, points, remedy)
         _check.vectors("points", points, n=3)
         places = _check.coordinates("points", points)
         if places.ndim != 2:
