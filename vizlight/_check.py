@@ -14,22 +14,20 @@ import re
 import sys
 import threading
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import UnionType
 
 import numpy as np
 
 from vizlight import _words
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vizlight._types import Array, Color, Foreign, Function, Indices, Raw, Vector
+from vizlight._types import Array, Color, Foreign, Function, Indices, Raw, Vector
 
 # pytest leaves the frames of this module out of tracebacks.
 __tracebackhide__ = True
 
 describe, message, one_of = _words.describe, _words.message, _words.one_of
+value_error, type_error = _words.value_error, _words.type_error
 
 #: Largest intensity, coefficient or power: the product of three of them fits float32.
 LARGEST = 1e9
@@ -96,7 +94,7 @@ def choice(name: str, value: object, allowed: Sequence[str], *, optional: bool =
     # An array would be compared element by element, so that anything but a text is ruled out first.
     if not (isinstance(value, str) and value in allowed) and not (optional and value is None):
         *others, last = (repr(text) for text in (*allowed, *([None] if optional else [])))
-        raise ValueError(message(name, f"{', '.join(others)} or {last}", describe(value)))
+        raise value_error(name, f"{', '.join(others)} or {last}", describe(value))
 
 
 def boolean(name: str, value: object, *, expected: str = "True or False") -> bool:
@@ -109,7 +107,7 @@ def boolean(name: str, value: object, *, expected: str = "True or False") -> boo
     """
     if isinstance(value, bool | np.bool_) or (isinstance(value, int) and value in (0, 1)):
         return bool(value)
-    raise TypeError(message(name, expected, describe(value)))
+    raise type_error(name, expected, value)
 
 
 def flags(frozen: Foreign) -> None:
@@ -135,7 +133,7 @@ def array_name(name: str, value: object) -> str:
     """Return the name of an array that is made: text that is not empty."""
     expected = "a name for the point array"
     if not text(name, value, expected=expected):
-        raise ValueError(message(name, expected, "an empty text"))
+        raise value_error(name, expected, "an empty text")
     return str(value)
 
 
@@ -144,10 +142,9 @@ def reals(name: str, value: object) -> Raw:
     try:
         array = np.asarray(unmasked(value))
     except ValueError as error:
-        expected = "numbers in rows of equal length"
-        raise TypeError(message(name, expected, describe(value))) from error
+        raise type_error(name, "numbers in rows of equal length", value) from error
     if array.dtype.kind not in "iubf":
-        raise TypeError(message(name, "real numbers", describe(value)))
+        raise type_error(name, "real numbers", value)
     holds(name, array.shape)
     return array
 
@@ -180,7 +177,7 @@ def floats_in(name: str, value: object, low: float, high: float, what: str = "nu
     low, high = np.float64(low - slack * abs(low)), np.float64(high + slack * abs(high))
     if not np.all((array >= low) & (array <= high) & np.isfinite(array)):
         bounds = f"of at least {low:g}" if high == math.inf else f"from {low:g} to {high:g}"
-        raise ValueError(message(name, f"{what} {bounds}", describe(value)))
+        raise value_error(name, f"{what} {bounds}", describe(value))
     return array
 
 
@@ -202,7 +199,7 @@ def broadcast_shape(**shapes: tuple[int, ...]) -> tuple[int, ...]:
         shape = np.broadcast_shapes(*shapes.values())
     except ValueError as error:
         got = ", ".join(str(shape) for shape in shapes.values())
-        raise ValueError(message(names, "shapes that broadcast", got)) from error
+        raise value_error(names, "shapes that broadcast", got) from error
     holds(names, shape)
     return shape
 
@@ -211,7 +208,7 @@ def holds(name: str, shape: Sequence[int]) -> None:
     """Check that memory can hold an array of some shape."""
     if math.prod(shape) > MOST:
         got = describe(tuple(shape))
-        raise ValueError(message(name, f"at most {MOST:.2g} numbers in all", got, "pass fewer"))
+        raise value_error(name, f"at most {MOST:.2g} numbers in all", got, "pass fewer")
 
 
 def unmasked(value: object) -> object:
@@ -232,9 +229,9 @@ def vectors(name: str, value: object, *, n: int | None = None) -> Array:
     """Return ``value`` as a floating-point array of shape (..., n), where n is at least 2."""
     array = floats(name, value)
     if n is not None and (array.ndim == 0 or array.shape[-1] != n):
-        raise ValueError(message(name, f"vectors of shape (..., {n})", array))
+        raise value_error(name, f"vectors of shape (..., {n})", array)
     if array.ndim == 0 or array.shape[-1] < 2:
-        raise ValueError(message(name, "vectors of shape (..., n) with n of 2 or more", array))
+        raise value_error(name, "vectors of shape (..., n) with n of 2 or more", array)
     return array
 
 
@@ -245,10 +242,10 @@ def cells(
     array = reals(name, value)
     if array.ndim != 2 or array.shape[1] not in sizes or array.dtype.kind not in "iu":
         shapes = " or ".join(f"(M, {size})" for size in sizes)
-        raise ValueError(message(name, f"integers of shape {shapes}", array))
+        raise value_error(name, f"integers of shape {shapes}", array)
     if array.size and not 0 <= array.min() <= array.max() < count:
         got = f"{array.min()} to {array.max()}"
-        raise ValueError(message(name, f"indices of {of} from 0 to {count - 1}", got))
+        raise value_error(name, f"indices of {of} from 0 to {count - 1}", got)
     return array.astype(np.intp, copy=False)
 
 
@@ -261,8 +258,7 @@ def indices(name: str, value: object, limit: int) -> Indices:
     if array.dtype.kind not in "iu":
         raise TypeError(message(name, "integers", array))
     if array.ndim != 1 or (array.size and not 0 <= array.min() <= array.max() < limit):
-        expected = f"a 1-D array of indices from 0 to {limit - 1}"
-        raise ValueError(message(name, expected, array))
+        raise value_error(name, f"a 1-D array of indices from 0 to {limit - 1}", array)
     return array.astype(np.intp, copy=False)
 
 
@@ -271,13 +267,13 @@ def number(name: str, value: object, *, low: float = -math.inf, high: float = ma
     value = _scalar(value)
     # To Python True is the number 1; as an option it is a mistake.
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise TypeError(message(name, "a number", describe(value)))
+        raise type_error(name, "a number", value)
     try:
         result = float(value)
     except OverflowError:  # an integer or a fraction beyond the largest double
         result = math.inf
     if not (math.isfinite(result) and low <= result <= high):
-        raise ValueError(message(name, _range(low, high), describe(value)))
+        raise value_error(name, _range(low, high), describe(value))
     return result
 
 
@@ -285,7 +281,7 @@ def positive(name: str, value: object, *, high: float = math.inf) -> float:
     """Return ``value`` as a finite float above 0 and not above ``high``."""
     result = number(name, value, low=0.0, high=high)
     if result == 0:
-        raise ValueError(message(name, "a number above 0", describe(value)))
+        raise value_error(name, "a number above 0", describe(value))
     return result
 
 
@@ -293,11 +289,11 @@ def integer(name: str, value: object, *, low: int, high: int = LARGEST_INTEGER) 
     """Return ``value`` as an int in the closed range [low, high]."""
     value = _scalar(value)
     if isinstance(value, bool) or not isinstance(value, numbers.Integral):
-        raise TypeError(message(name, "an integer", describe(value)))
+        raise type_error(name, "an integer", value)
     result = int(value)
     if not low <= result <= high:
         expected = f"of at least {low}" if result < low else f"of at most {high}"
-        raise ValueError(message(name, f"an integer {expected}", describe(value)))
+        raise value_error(name, f"an integer {expected}", describe(value))
     return result
 
 
@@ -311,10 +307,10 @@ def _scalar(value: object) -> object:
 def text(name: str, value: object, *, expected: str = "text") -> str:
     """Return a string without a null character, at which VTK and files end names."""
     if not isinstance(value, str):
-        raise TypeError(message(name, expected, describe(value)))
+        raise type_error(name, expected, value)
     # Half of a surrogate pair has no bytes in UTF-8, in which VTK takes names.
     if "\0" in value or value != value.encode("utf-8", "ignore").decode():
-        raise ValueError(message(name, f"{expected} of valid characters", describe(value)))
+        raise value_error(name, f"{expected} of valid characters", describe(value))
     return str(value)
 
 
@@ -323,16 +319,16 @@ def path(name: str, value: object) -> Path:
     expected = "the path of a file"
     file = os.fspath(value) if isinstance(value, str | os.PathLike) else value
     if not isinstance(file, str):
-        raise TypeError(message(name, expected, describe(value)))
+        raise type_error(name, expected, value)
     try:
         # Bytes that are no characters of the locale name files all the same.
         valid = "\0" not in os.fsencode(file).decode("latin-1")
     except UnicodeEncodeError:
         valid = False
     if not valid:
-        raise ValueError(message(name, f"{expected} of valid characters", describe(value)))
+        raise value_error(name, f"{expected} of valid characters", describe(value))
     if not file:
-        raise ValueError(message(name, expected, "an empty text"))
+        raise value_error(name, expected, "an empty text")
     return Path(file)
 
 
@@ -341,14 +337,14 @@ def iterable(name: str, value: object, expected: str) -> None:
     # An array without axes has the method ``__iter__``, but nothing to iterate over.
     flat = getattr(value, "ndim", 1) != 0
     if isinstance(value, str | bytes | dict) or not (flat and hasattr(value, "__iter__")):
-        raise TypeError(message(name, expected, describe(value), "put a single one in a list"))
+        raise type_error(name, expected, value, "put a single one in a list")
 
 
 def function(name: str, value: object, *, optional: bool = False) -> None:
     """Check that a value can be called; with ``optional=True`` None is allowed too."""
     if not (callable(value) or (optional and value is None)):
         expected = "a function" + (" or None" if optional else "")
-        raise TypeError(message(name, expected, describe(value)))
+        raise type_error(name, expected, value)
 
 
 def vector(name: str, value: object, *, direction: bool = False, n: int | None = None) -> Vector:
@@ -358,15 +354,15 @@ def vector(name: str, value: object, *, direction: bool = False, n: int | None =
     """
     array = vectors(name, value)
     if array.ndim != 1 or array.size > LARGEST:
-        raise ValueError(message(name, "one vector of n components", array))
+        raise value_error(name, "one vector of n components", array)
     result = tuple(float(x) for x in array)
     if not all(math.isfinite(x) for x in result):
         remedy = "for a light or an eye at infinity pass direction=" if "position" in name else ""
-        raise ValueError(message(name, "finite components", result, remedy))
+        raise value_error(name, "finite components", result, remedy)
     if direction and not any(result):
-        raise ValueError(message(name, "a direction of non-zero length", result))
+        raise value_error(name, "a direction of non-zero length", result)
     if n is not None and len(result) != n:
-        raise ValueError(message(name, f"{n} components", len(result)))
+        raise value_error(name, f"{n} components", len(result))
     return result
 
 
@@ -377,7 +373,7 @@ def limits(name: str, value: object) -> tuple[float, float]:
         return -half, half
     ends = vector(name, value)
     if len(ends) != 2 or ends[0] > ends[1]:
-        raise ValueError(message(name, "a lower and a higher number", value))
+        raise value_error(name, "a lower and a higher number", value)
     return ends[0], ends[1]
 
 
@@ -406,13 +402,13 @@ def color(name: str, value: object) -> Color | None:
             value = _named(value)
         except ValueError as error:
             expected = "a colour's name, '#rrggbb' or (r, g, b)"
-            raise ValueError(message(name, expected, describe(value))) from error
+            raise value_error(name, expected, describe(value)) from error
     channels = getattr(value, "float_rgb", value)
     array = floats(name, channels)
     if array.shape != (3,) or not np.all((array >= 0) & (array <= 1)):
         remedy = "divide bytes by 255; brighten a light with intensity="
         expected = "three channels (r, g, b) from 0 to 1"
-        raise ValueError(message(name, expected, describe(channels), remedy))
+        raise value_error(name, expected, describe(channels), remedy)
     r, g, b = (float(x) for x in array)
     return r, g, b
 
@@ -420,23 +416,27 @@ def color(name: str, value: object) -> Color | None:
 def instance(
     name: str,
     value: object,
-    kind: type,
+    kind: type | UnionType,
+    expected: str = "",
     *,
     optional: bool = False,
     home: str = "",
     remedy: str = "",
 ) -> None:
-    """Check that a value is an instance of a class of this package.
+    """Check that a value is an instance of a class.
 
-    With ``optional=True`` None is allowed too. ``home`` is the public module that holds the
-    class, if the package itself does not export it.
+    With ``optional=True`` None is allowed too. Without ``expected``, the words for the class, it is
+    one of this package; ``home`` is the public module that holds it, if the package itself does not
+    export it.
     """
-    if not (isinstance(value, kind) or (optional and value is None)):
+    if isinstance(value, kind) or (optional and value is None):
+        return
+    if not expected and isinstance(kind, type):
         where = f"vizlight.{home}." if home else "vizlight."
         expected = f"a {where}{kind.__name__}" + (" or None" if optional else "")
         if not remedy and callable(value) and hasattr(value, "__name__"):
             remedy = f"call it: {value.__name__}()"
-        raise TypeError(message(name, expected, describe(value), remedy))
+    raise type_error(name, expected, value, remedy)
 
 
 def set_fields(frozen: object, **values: object) -> None:

@@ -19,15 +19,13 @@ import shutil
 import threading
 import types
 import warnings
+from collections.abc import Callable
 from functools import cache, lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, ParamSpec, TypeVar
+from typing import Generic, ParamSpec, TypeVar
 
 from vizlight import _cache, _check
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -60,7 +58,7 @@ def wanted() -> str:
     value = os.environ.get("VIZLIGHT_FAST", "")
     if value not in ("", "0", "1"):
         expected = "0 (off), 1 (always) or nothing (where it pays)"
-        raise ValueError(_check.message("VIZLIGHT_FAST", expected, repr(value)))
+        raise _check.value_error("VIZLIGHT_FAST", expected, repr(value))
     return value
 
 

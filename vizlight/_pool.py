@@ -5,18 +5,14 @@ from __future__ import annotations
 import contextlib
 import contextvars
 import os
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vizlight import _check
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from vizlight._types import Slice
+from vizlight._types import Slice
 
 #: Size in bytes of a piece of memory that is freed before the first blocks run.
 PIECE = (1 << 25) - (1 << 20)
@@ -52,7 +48,7 @@ def workers() -> int:
     if setting:
         if not setting.isdecimal() or not int(setting):
             expected = "an integer of at least 1, or nothing (all processors)"
-            raise ValueError(_check.message("VIZLIGHT_THREADS", expected, repr(setting)))
+            raise _check.value_error("VIZLIGHT_THREADS", expected, repr(setting))
         return int(setting)
     try:
         return len(os.sched_getaffinity(0))

@@ -27,10 +27,6 @@ if TYPE_CHECKING:
 
     from vizlight._types import Keywords
 
-__all__ = [
-    "Doing", "end_with", "has_parent", "limit_memory", "read_limit", "run", "stage", "unreadable",
-]  # fmt: skip
-
 Doing: TypeAlias = Literal["read", "write", "draw"]
 
 #: Exit codes of the command line: a machine that lacks something; bad input.

@@ -19,19 +19,16 @@ import sys
 import tempfile
 import threading
 import warnings
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import BinaryIO, TypeAlias
 
 from vtkmodules.vtkCommonCore import vtkSMPTools
 
 from vizlight import _supervise
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from typing import BinaryIO
-
-    #: A function that returns why it refuses a file, or "", and the time that it has.
-    Request: TypeAlias = tuple[Callable[[], str], float]
+#: A function that returns why it refuses a file, or "", and the time that it has.
+Request: TypeAlias = tuple[Callable[[], str], float]
 
 __all__ = ["are_needed", "refusal", "serve"]
 

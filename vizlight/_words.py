@@ -27,6 +27,16 @@ def message(name: str, expected: str, got: object, remedy: str = "") -> str:
     return f"{text}; {remedy}" if remedy else text
 
 
+def value_error(name: str, expected: str, got: object, remedy: str = "") -> ValueError:
+    """Return the error of a wrong value, with a :func:`message`."""
+    return ValueError(message(name, expected, got, remedy))
+
+
+def type_error(name: str, expected: str, value: object, remedy: str = "") -> TypeError:
+    """Return the error of a value of a wrong type, which the :func:`message` describes."""
+    return TypeError(message(name, expected, describe(value), remedy))
+
+
 def one_of(names: Sequence[str]) -> str:
     """Return the names that the user may choose from, as part of an error message."""
     return f"one of {list(names)}" if names else "but the mesh has none"

@@ -8,16 +8,13 @@ gives them the names, the options and their documentation.
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING, Concatenate, Generic, ParamSpec, TypeVar
+from collections.abc import Callable
+from typing import Concatenate, Generic, ParamSpec, TypeVar
 
 import pyvista as pv
 
 import vizlight
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight._types import Foreign, Function
+from vizlight._types import Foreign, Function
 
 __all__ = ["Accessor"]
 

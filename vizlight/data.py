@@ -39,7 +39,7 @@ def example_path(name: str = "rotating_disk.vtu") -> Path:
     """
     names = sorted(p.name for p in _folder().glob("*.vt?"))
     if not (isinstance(name, str) and name in names):
-        raise ValueError(_check.message("name", f"one of {names}", _check.describe(name)))
+        raise _check.value_error("name", f"one of {names}", _check.describe(name))
     return _folder() / name
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
@@ -11,19 +12,14 @@ import pyvista as pv
 from vizlight import files
 from vizlight.data import load_example
 from vizlight.draw import render
-from vizlight.draw.backends import choose_backend, window_class
+from vizlight.draw.backends import Backend, choose_backend, window_class
 from vizlight.filters.illuminate import illuminate
 from vizlight.filters.streamlines import streamlines
 from vizlight.observers.check import check
+from vizlight.observers.figures import Direction
 from vizlight.observers.legibility import legibility
 from vizlight.scene import Scene, View, presets
 from vizlight.shading import engine
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from vizlight.draw.backends import Backend
-    from vizlight.observers.figures import Direction
 
 EYE = (0.42, 1.0, 0.2)
 #: Distance between lines, and length of arrows, as shares of the globe's radius.
@@ -118,7 +114,7 @@ def save_picture(
         plotter = pv.Plotter(
             off_screen=True, shape=(1, 2), window_size=render.pixels_of(size), border=False
         )
-    try:
+    with contextlib.closing(plotter):
         arrows = demo.globe.glyph(orient="wind", scale=False, factor=SPACING, tolerance=SPACING / 2)
         plotter.add_mesh(demo.globe, color="lightsteelblue", smooth_shading=True)
         plotter.add_mesh(arrows, color="black")
@@ -132,8 +128,6 @@ def save_picture(
         _panel(plotter, f"vizlight: hue is the direction, read to {wrong:.1f}\N{DEGREE SIGN}")
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
         return files.replace_file(path, plotter.screenshot, doing="draw")
-    finally:
-        plotter.close()
 
 
 def _panel(plotter: pv.Plotter, text: str) -> None:

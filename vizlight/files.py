@@ -409,8 +409,7 @@ def _selection(
 
 def _check_selection(time: object, at: object, nodata: object) -> float | None:
     if getattr(time, "ndim", 0):
-        expected = "the time of a step, or its index"
-        raise TypeError(_check.message("time", expected, _check.describe(time)))
+        raise _check.type_error("time", "the time of a step, or its index", time)
     _check.instance("at", at, dict, optional=True)
     return fills.checked(nodata)
 

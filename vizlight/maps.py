@@ -112,12 +112,11 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
     >>> maps.heights(-50.0, 1200.0).scalar_range
     (-50.0, 1200.0)
     """
-    import numpy as np
     import pyvista as pv
 
     low, high = _check.number("low", low), _check.number("high", high)
     if not low < high:
-        raise ValueError(_check.message("high", f"a number above low={low:g}", high))
+        raise _check.value_error("high", f"a number above low={low:g}", high)
     table = pv.LookupTable(n_values=256)
     # The middles of the 256 steps.
     values = low + (high - low) * (np.arange(256) + 0.5) / 256
@@ -223,9 +222,9 @@ def bands(
     logarithmic = _check.boolean("logarithmic", logarithmic)
     low, high = _check.limits("limits", limits)
     if not low < high:
-        raise ValueError(_check.message("limits", f"a number above {low:g} at the end", high))
+        raise _check.value_error("limits", f"a number above {low:g} at the end", high)
     if logarithmic and low <= 0:
-        raise ValueError(_check.message("limits", "positive numbers for a logarithm", f"{low:g}"))
+        raise _check.value_error("limits", "positive numbers for a logarithm", f"{low:g}")
     ends = low, high
     edges = np.unique(
         [low, *np.clip(_check.coordinates("levels", levels).ravel(), low, high), high]
@@ -245,13 +244,13 @@ def bands(
         colors: Foreign = pv.plotting.colors.get_cmap_safe(cmap)(shares)  # type: ignore[arg-type]
     except (TypeError, ValueError) as error:
         expected, got = "the name of a colour map", _check.describe(cmap)
-        raise ValueError(_check.message("cmap", expected, got)) from error
+        raise _check.value_error("cmap", expected, got) from error
     table.values = np.round(255 * np.asarray(colors)).astype(np.uint8)
     table.nan_color = MISSING
     table.scalar_range, table.log_scale = ends, logarithmic
     if below is not None:
         if not is_color_like(below):
-            raise ValueError(_check.message("below", "a colour", _check.describe(below)))
+            raise _check.value_error("below", "a colour", _check.describe(below))
         table.below_range_color = below
     return table
 
@@ -290,7 +289,6 @@ def kinds(
     >>> maps.kinds([1, 7, 44]).scalar_range
     (0.5, 44.5)
     """
-    import numpy as np
     import pyvista as pv
 
     names = values if isinstance(values, Mapping) else {}
@@ -298,11 +296,11 @@ def kinds(
     whole = rows.size and np.all(rows == np.round(rows)) and np.ptp(rows) < MOST_SPAN
     if not whole:
         expected = f"one whole number or more, less than {MOST_SPAN} apart"
-        raise ValueError(_check.message("values", expected, values))
+        raise _check.value_error("values", expected, values)
     shades_of = {} if colors is None else colors
     if not isinstance(shades_of, Mapping) or not all(map(is_color_like, shades_of.values())):
         expected = "a mapping of kinds to colours, such as {1: '#ff0000'}"
-        raise ValueError(_check.message("colors", expected, colors))
+        raise _check.value_error("colors", expected, colors)
     # VTK gives a table of one colour a second one.
     table = pv.LookupTable(n_values=max(int(np.ptp(rows)) + 1, 2))
     # A table with transparent colours would make all of a mesh translucent.

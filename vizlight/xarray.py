@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING
 
+import pyvista as pv
 import xarray
 
 import vizlight
-
-if TYPE_CHECKING:
-    import pyvista as pv
-
-    from vizlight._types import Foreign
+from vizlight._types import Foreign
 
 
 @xarray.register_dataset_accessor("vizlight")

@@ -162,7 +162,7 @@ def test_corners_stand_apart_from_coarse_arcs():
     rod = pv.Line((0, 0, 0), (0, 0, 3), resolution=6).tube(radius=0.5, n_sides=20, capping=True)
     rod = rod.triangulate().clean()
     rod.clear_data()
-    assert normals.computed_normals(rod).sharp > 0.02
+    assert vtk_normals.computed_normals(rod).sharp > 0.02
     ends = normals.split_edges(rod, "auto")
     assert ends.n_points == rod.n_points + 40
 

@@ -95,7 +95,7 @@ def test_a_surface_without_creases_is_surveyed_once(monkeypatch):
             made.append(self)
             super().__init__(*given, **options)
 
-    monkeypatch.setattr(normals, "SurfaceShape", Counted)
+    monkeypatch.setattr(orientation, "SurfaceShape", Counted)
     ball = plain(pv.Sphere())
     scene = vizlight.Scene(lights=vizlight.Light(direction=(1, 1, 1)))
     lit = vizlight.illuminate(ball, scene, feature_angle="auto")

@@ -7,7 +7,7 @@ import pyvista as pv
 import vizlight
 from vizlight import Light, Scene, View
 from vizlight.mesh.normals import split_edges
-from vizlight.vtk import memory, normals, polylines
+from vizlight.vtk import memory, normals, orientation, polylines
 
 
 @pytest.fixture
@@ -15,12 +15,12 @@ def shapes(monkeypatch):
     """Surfaces whose shape was found, one after the other."""
     found = []
 
-    class Counted(normals.SurfaceShape):
+    class Counted(orientation.SurfaceShape):
         def __init__(self, surface, side=None, block=None):
             found.append(surface.GetNumberOfPoints())
             super().__init__(surface, side, block)
 
-    monkeypatch.setattr(normals, "SurfaceShape", Counted)
+    monkeypatch.setattr(orientation, "SurfaceShape", Counted)
     monkeypatch.setattr(memory, "_KEPT", {})
     return found
 
@@ -124,8 +124,8 @@ def test_a_mesh_with_normals_is_looked_at_once_if_they_leave_doubt(
     shapes, monkeypatch, carried, count
 ):
     """Normals that fit the faces tell by themselves that no edge is sharp."""
-    walks, lean_of = [], normals.lean_of
-    monkeypatch.setattr(normals, "lean_of", lambda *given: walks.append(0) or lean_of(*given))
+    walks, lean_of = [], orientation.lean_of
+    monkeypatch.setattr(orientation, "lean_of", lambda *given: walks.append(0) or lean_of(*given))
     mesh = pv.Plane(i_resolution=99, j_resolution=99).triangulate()
     x, y, _ = np.asarray(mesh.points).T
     np.asarray(mesh.points)[:, 2] = 0.1 * np.sin(9 * x) * np.cos(7 * y)

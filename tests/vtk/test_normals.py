@@ -9,7 +9,7 @@ from vectors import unit
 import vizlight
 from vizlight import Light, Scene, View
 from vizlight.mesh.normals import split_edges
-from vizlight.vtk import normals
+from vizlight.vtk import normals, orientation
 
 
 @pytest.mark.parametrize("winding", [1, -1])
@@ -45,10 +45,10 @@ def test_maps_have_the_normals_that_a_search_finds(axis, case, monkeypatch):
         sheet = pv.PolyData.from_regular_faces(sheet.points, faces)
     sheet.points = np.vstack([sheet.points, sheet.points[:1]])
     quick = normals.computed_normals(sheet)
-    is_map = normals.normal_of_map(sheet) is not None
+    is_map = orientation.normal_of_map(sheet) is not None
     assert is_map == (case in ("map", "triangles"))
     # Other points, as results are kept.
-    monkeypatch.setattr(normals, "normal_of_map", lambda _: None)
+    monkeypatch.setattr(orientation, "normal_of_map", lambda _: None)
     searched = normals.computed_normals(pv.PolyData(np.asarray(sheet.points) * 2, sheet.faces))
     np.testing.assert_array_equal(quick.vectors, searched.vectors)
     np.testing.assert_array_equal(quick.lean, searched.lean)
@@ -341,9 +341,11 @@ def test_lean_is_the_sine_of_the_largest_angle_with_a_face(length):
         np.maximum.at(expected, face, sine)
     for order in (1, -1):
         surface = pv.PolyData.from_regular_faces(mesh.points, mesh.regular_faces[:, ::order])
-        np.testing.assert_allclose(normals.lean_of(surface, vectors * sides), expected, atol=1e-5)
+        np.testing.assert_allclose(
+            orientation.lean_of(surface, vectors * sides), expected, atol=1e-5
+        )
     vectors[3] = np.nan
-    assert normals.lean_of(mesh, vectors)[3] == 0
+    assert orientation.lean_of(mesh, vectors)[3] == 0
 
 
 def test_normals_of_faces_are_told_from_others():

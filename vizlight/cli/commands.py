@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 import vizlight
-from vizlight._words import message
+from vizlight._words import message, value_error
 from vizlight.cli import scenes
 from vizlight.cli.job import Command
 from vizlight.cli.options import (
@@ -205,10 +205,10 @@ def light(
     light_options = keywords(how)
     if indices := _indices(common.out, pieces):
         if legibility:
-            raise ValueError(message("--legibility", "one mesh, lit as a whole", "pieces"))
+            raise value_error("--legibility", "one mesh, lit as a whole", "pieces")
         if refine:
             remedy = "refine their union, so that split edges match"
-            raise ValueError(message("--refine", "one mesh", "pieces", remedy))
+            raise value_error("--refine", "one mesh", "pieces", remedy)
         return _light_pieces(files, indices, target, light_options, common, color, pieces)
     wishes = scenes.wishes_of(common, target, color, light=light_options)
     wishes = replace(wishes, refine=_refinement(refine))
@@ -227,7 +227,7 @@ def _refinement(refine: str | None) -> float | None:
     expected = f"a number of at least {FINEST:g}, such as 1/255"
     error = float(fraction("refine", refine, expected))
     if error < FINEST:
-        raise ValueError(message("--refine", expected, refine))
+        raise value_error("--refine", expected, refine)
     return error
 
 
@@ -314,7 +314,7 @@ def _indices(out: Output, pieces: Pieces) -> list[Path]:
             endings = ", ".join(INDEX.values())
             expected = f"an output that ends in {endings}, of pieces, beside {flags[0]}"
             got = ", ".join(str(path) for path in out.output or ()) or "none"
-            raise ValueError(message("output", expected, got))
+            raise value_error("output", expected, got)
     return indices
 
 
@@ -339,16 +339,16 @@ def _light_pieces(
     ):
         for name in names.split():
             if getattr(part, name):
-                raise ValueError(message(f"--{name}", "no such option for pieces", "one"))
+                raise value_error(f"--{name}", "no such option for pieces", "one")
     pictures = [path for path in out.output or () if path not in indices]
     for path in pictures:
         if path.suffix.lower() != ".png":
             expected = "pictures .png beside the index of pieces"
             remedy = f"make it of the index by 'vizlight light {indices[0]} -o {path}'"
-            raise ValueError(message("output", expected, f"'{path}'", remedy))
+            raise value_error("output", expected, f"'{path}'", remedy)
     if len(indices) > 1:
         expected = "one index of pieces"
-        raise ValueError(message("output", expected, ", ".join(map(str, indices))))
+        raise value_error("output", expected, ", ".join(map(str, indices)))
     if indices[0].suffix == ".pvtp":
         light_options = {"feature_angle": "auto"} | light_options
     what = scenes.given_options(contour=target.contour, level=target.level, slab=pieces.slab)
@@ -398,9 +398,9 @@ def _runs(pieces: Pieces) -> dict[str, Step]:
         processes = Step("work", "vizlight.pieces.Processes", pieces.workers)
         return {"map": processes} if (pieces.workers or 1) > 1 else {}
     if pieces.workers is not None:
-        raise ValueError(message("--workers", "--workers or --scheduler", "both"))
+        raise value_error("--workers", "--workers or --scheduler", "both")
     if importlib.util.find_spec("distributed") is None:
         remedy = "install it by: pip install 'vizlight[scale]'"
-        raise ValueError(message("--scheduler", "the package distributed", "none", remedy))
+        raise value_error("--scheduler", "the package distributed", "none", remedy)
     # An address that nobody answers at is an error of the operating system.
     return {"map": Step("work", "distributed.Client", pieces.scheduler, timeout=10)}

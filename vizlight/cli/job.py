@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import vizlight
 from vizlight._supervise import BAD_INPUT
-from vizlight._words import message
+from vizlight._words import message, value_error
 from vizlight.cli.output import OK, add_note, complain, draw, notes_at_end, one_line, say
 from vizlight.cli.scenes import times
 from vizlight.looks.steps import Step, in_order, source, written
@@ -79,13 +79,13 @@ class Command:
         joined = len(paths) > 1 and bool(named) and not any(path.is_dir() for path in named)
         if joined and self.part.times is not None:
             expected = "one time for several files in one picture"
-            raise ValueError(message("times", expected, self.part.times, "pass --time"))
+            raise value_error("times", expected, self.part.times, "pass --time")
         groups = [list(paths)] if joined else [[path] for path in paths]
         _check_output(out, several=len(groups) > 1 or self.part.times is not None)
         stems = [path.stem for path in paths]
         for twice in (name for name in stems if not joined and stems.count(name) > 1):
             expected = "files of different names, after which the outputs are named"
-            raise ValueError(message("file", expected, f"{twice!r} twice"))
+            raise value_error("file", expected, f"{twice!r} twice")
         scripts: list[list[Step]] = []
         codes = [OK]
         for group in groups:
@@ -213,7 +213,7 @@ def _check_output(out: Output, *, several: bool) -> None:
         if not path.is_dir():
             files.check_output(path, FORMATS)
     if out.paraview and several:
-        raise ValueError(message("paraview", "one file to light", "several"))
+        raise value_error("paraview", "one file to light", "several")
     if out.paraview:
         files.check_output(out.paraview, (".py",))
 

@@ -7,8 +7,8 @@ import logging
 import shlex
 import sys
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from cyclopts import CycloptsError
 
@@ -16,9 +16,6 @@ from vizlight._supervise import BAD_INPUT, LACKING
 from vizlight.cli import commands, options  # noqa: F401 - the commands are in app
 from vizlight.cli.options import HELP, Backend, app
 from vizlight.cli.output import OK, add_note, complain, console, draw, notes_at_end, one_line, say
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

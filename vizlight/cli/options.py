@@ -20,7 +20,7 @@ from cyclopts import App, Group, Parameter
 from vizlight import _words
 from vizlight._questions import QUESTIONS
 from vizlight._version import __version__
-from vizlight._words import AXES, message, numbers
+from vizlight._words import AXES, numbers, value_error
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -312,13 +312,13 @@ def vector(name: str, text: str, *, n: int = 3, direction: bool = True) -> tuple
     if not values:
         expected = "three numbers x,y,z" + f" or {n} numbers" * (n != 3)
         expected += ", or azimuth,altitude in degrees" * by_angles
-        raise ValueError(message(f"--{name}", expected, repr(text)))
+        raise value_error(f"--{name}", expected, repr(text))
     if len(values) == 2:
         from vizlight.geometry.relief import sun
 
         values = tuple(sun.toward(*values).round(15).tolist())
     if direction and not any(values):
-        raise ValueError(message(f"--{name}", "a direction x,y,z, not all zero", repr(text)))
+        raise value_error(f"--{name}", "a direction x,y,z, not all zero", repr(text))
     return values + (0.0,) * (n - len(values))
 
 
@@ -327,7 +327,7 @@ def hyperplane(name: str, text: str) -> tuple[tuple[float, ...], float]:
     normal, _, offset = text.rpartition(":")
     values, distance = numbers(normal, range(3, 100)), numbers(offset, (1,))
     if not (any(values) and distance):
-        raise ValueError(message(f"--{name}", "NORMAL:OFFSET, such as 0,0,0,1:0.2", repr(text)))
+        raise value_error(f"--{name}", "NORMAL:OFFSET, such as 0,0,0,1:0.2", repr(text))
     return values, distance[0]
 
 
@@ -335,7 +335,7 @@ def place(name: str, text: str) -> tuple[str, float | str]:
     """Return the name of an axis and a value along it."""
     axis, _, value = text.partition("=")
     if not (axis and value):
-        raise ValueError(message(f"--{name}", "the name of an axis, = and a value", repr(text)))
+        raise value_error(f"--{name}", "the name of an axis, = and a value", repr(text))
     number = numbers(value, (1,))
     # A whole number can be an index.
     return axis, (int(number[0]) if number[0].is_integer() else number[0]) if number else value
@@ -353,7 +353,7 @@ def fraction(
     try:
         return float(Fraction(text))
     except (ValueError, ZeroDivisionError) as error:
-        raise ValueError(message(f"--{name}", expected, repr(text))) from error
+        raise value_error(f"--{name}", expected, repr(text)) from error
 
 
 def pixels(text: str) -> tuple[int, int]:
@@ -362,7 +362,7 @@ def pixels(text: str) -> tuple[int, int]:
 
     width, _, height = text.lower().partition("x")
     if not (width.isdecimal() and height.isdecimal()):
-        raise ValueError(message("--size", "WIDTHxHEIGHT in pixels", repr(text)))
+        raise value_error("--size", "WIDTHxHEIGHT in pixels", repr(text))
     columns, rows = render.pixels_of((int(width), int(height)))
     return columns, rows
 
@@ -404,7 +404,7 @@ def _rotations(name: str, texts: list[str]) -> object:
         turned, colon, angle = text.partition(":")
         if not colon:
             expected = "PLANE:ANGLE with the angle in radians, such as xw:0.3"
-            raise ValueError(message(f"--{name}", expected, repr(text)))
+            raise value_error(f"--{name}", expected, repr(text))
         turns.append((turned, fraction(name, angle)))
     return turns
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import vizlight
 from vizlight._questions import QUESTIONS
-from vizlight._words import message, numbers
+from vizlight._words import numbers, value_error
 from vizlight.cli import options
 from vizlight.cli.options import SurfacePart
 from vizlight.looks.steps import Step
@@ -71,9 +71,7 @@ def wishes_of(
         preset = QUESTIONS.get(lights.question or "")
         if preset is not None and preset.by_hue and color.scalars is not None:
             expected = "no --scalars beside it, whose hues would hide the hues of the light"
-            raise ValueError(
-                message(f"--for {lights.question}", expected, f"--scalars {color.scalars}")
-            )
+            raise value_error(f"--for {lights.question}", expected, f"--scalars {color.scalars}")
     scene = None if lights.scene is None else _scene_of(lights.scene)
     seen = given_options(
         up=None if eye.up is None else options.vector("up", eye.up),
@@ -102,7 +100,7 @@ def _check_lights(lights: Lights) -> None:
     for name in ("light", "light_position", "headlight"):
         if lights.question is not None and getattr(lights, name):
             got = f"--{name.replace('_', '-')} beside it"
-            raise ValueError(message("--for", "lights of its own", got, "leave one out"))
+            raise value_error("--for", "lights of its own", got, "leave one out")
 
 
 def _part_of(part: FilePart) -> Keywords:
@@ -146,8 +144,7 @@ def times(file: Path, part: FilePart) -> list[float | str | None]:
     except (TypeError, ValueError):
         chosen = []
     if not chosen:
-        got = f"{part.times!r} for {len(steps)} steps"
-        raise ValueError(message("--times", expected, got))
+        raise value_error("--times", expected, f"{part.times!r} for {len(steps)} steps")
     return [*chosen]
 
 
@@ -245,7 +242,7 @@ def _view_of_scene(scene: Scene, seen: Keywords) -> object:
     assert view is not None
     if view.direction is None:
         remedy = "give the view a direction too, or pass --view"
-        raise ValueError(message("--scene", "a view with a direction", view, remedy))
+        raise value_error("--scene", "a view with a direction", view, remedy)
     if view.position is None or view.parallel or len(view.position) != 3:
         if view.parallel:
             seen["parallel"] = True
@@ -267,7 +264,7 @@ def _saved_camera(file: str) -> pv.Camera:
             raise ValueError
     except (TypeError, ValueError) as error:
         expected = "a JSON list of the camera's position, focal point and direction up"
-        raise ValueError(message("--view", expected, f"'{file}'")) from error
+        raise value_error("--view", expected, f"'{file}'") from error
     return _camera(position, focus, up)
 
 
@@ -295,4 +292,4 @@ def _json(option: str, path: Path) -> Foreign:
         return json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
-        raise ValueError(message(f"--{option}", "a JSON file", f"'{path}' ({reason})")) from error
+        raise value_error(f"--{option}", "a JSON file", f"'{path}' ({reason})") from error

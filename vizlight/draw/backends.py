@@ -16,8 +16,6 @@ from typing import Literal, cast, get_args
 
 from vizlight import _cache, _check
 
-__all__ = ["Backend", "BackendError", "Probe", "choose_backend", "probe"]
-
 Backend = Literal["egl", "osmesa"]
 
 _VARIABLE = "VTK_DEFAULT_OPENGL_WINDOW"

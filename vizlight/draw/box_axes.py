@@ -9,15 +9,13 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight._types import Array, Indices
+from vizlight._types import Array, Given, Indices
 from vizlight.draw.cameras import footprint
 from vizlight.draw.map_frames import rectangle
 from vizlight.draw.ticks import even_numbers, round_length
 from vizlight.mesh import blocks
 from vizlight.vtk import letters
 from vizlight.vtk.letters import DIGIT
-
-__all__ = ["box_axes", "box_edges", "captions"]
 
 #: Length of ticks, their width, and distance of words from them, in heights of letters.
 TICK, LINE, GAP = 0.4, 0.07, 0.25
@@ -70,7 +68,7 @@ def box_axes(
     box = _box_of(mesh)
     every: object = names
     if not isinstance(every, list | tuple) or len(every) != 3:
-        raise ValueError(_check.message("names", "three texts", _check.describe(names)))
+        raise _check.value_error("names", "three texts", _check.describe(names))
     names = [_check.text("names", name) for name in every]
     height, size = _check.positive("height", height), _check.positive("size", size)
     eye = _Eye(camera, height)
@@ -143,16 +141,15 @@ def captions(
     TypeError, ValueError
         If a block has no finite box, a height is not positive, or a block has no two ends.
     """
-    if not isinstance(meshes, pv.MultiBlock):
-        raise TypeError(_check.message("meshes", "a MultiBlock", _check.describe(meshes)))
+    _check.instance("meshes", meshes, pv.MultiBlock, "a MultiBlock")
     height, size = _check.positive("height", height), _check.positive("size", size)
     unit = _check.text("unit", unit)
     expected = f"two words for each of the {len(meshes)} blocks"
     pairs: object = ends
     if not isinstance(pairs, list | tuple) or len(pairs) not in (0, len(meshes)):
-        raise ValueError(_check.message("ends", expected, _check.describe(ends)))
+        raise _check.value_error("ends", expected, _check.describe(ends))
     if not all(isinstance(pair, list | tuple) and len(pair) == 2 for pair in pairs):
-        raise ValueError(_check.message("ends", expected, _check.describe(ends)))
+        raise _check.value_error("ends", expected, _check.describe(ends))
     ends = [[_check.text("ends", word) for word in pair] for pair in ends]
     eye = _Eye(camera, height)
     parts = list[tuple["Array", "Indices"]]()
@@ -188,14 +185,12 @@ def _around(
     return parts
 
 
-def _box_of(mesh: object) -> Array:
+def _box_of(mesh: Given) -> Array:
     """Return the ends of the box of a mesh along x, y and z."""
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     if not mesh.n_points:
-        raise ValueError(_check.message("mesh", "a mesh with points", "none"))
-    box: Array = _check.coordinates("mesh", mesh.bounds).reshape(3, 2)
-    return box
+        raise _check.value_error("mesh", "a mesh with points", "none")
+    return _check.coordinates("mesh", mesh.bounds).reshape(3, 2)
 
 
 class _Eye:
@@ -210,8 +205,7 @@ class _Eye:
     """
 
     def __init__(self, camera: pv.Camera, height: float) -> None:
-        if not isinstance(camera, pv.Camera):
-            raise TypeError(_check.message("camera", "a camera", _check.describe(camera)))
+        _check.instance("camera", camera, pv.Camera, "a camera")
         self._camera, self._height = camera, height
         self.place = np.array(camera.position, dtype=np.float64)
         self.away = np.array(camera.GetDirectionOfProjection())

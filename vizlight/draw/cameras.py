@@ -16,8 +16,6 @@ from vizlight import _check
 from vizlight._types import Array
 from vizlight.mesh.blocks import all_blocks
 
-__all__ = ["camera_on", "over_shoulder"]
-
 Mesh: TypeAlias = pv.DataSet | pv.MultiBlock
 #: Opening angle of a perspective camera, in degrees, which is VTK's default.
 VIEW_ANGLE = 30.0
@@ -102,16 +100,16 @@ def camera_on(
     box = _check.coordinates("bounds", box_bounds)
     if box.shape != (6,):
         expected = "a mesh or six finite numbers"
-        raise ValueError(_check.message("bounds", expected, _check.describe(bounds)))
+        raise _check.value_error("bounds", expected, _check.describe(bounds))
     box = box.reshape(3, 2)
     centre = box.mean(axis=1)
     if np.any(box[:, 1] < box[:, 0]):
-        raise ValueError(_check.message("bounds", "a mesh with finite points", "none"))
+        raise _check.value_error("bounds", "a mesh with finite points", "none")
     # Halved before the difference, which could overflow for the largest coordinates.
     size = float(np.max(box[:, 1] / 2 - box[:, 0] / 2)) * 2
     if size and not SIZES[0] <= size <= SIZES[1]:
         expected = f"a size from {SIZES[0]:g} to {SIZES[1]:g}"
-        raise ValueError(_check.message("bounds", expected, f"{size:g}", "scale the mesh"))
+        raise _check.value_error("bounds", expected, f"{size:g}", "scale the mesh")
     # A box without an extent is shown like a ball of radius 1.
     radius = 0.5 * float(np.linalg.norm(box[:, 1] - box[:, 0])) or 1.0
     # At this distance the sphere around the box touches the cone of sight.
@@ -196,7 +194,7 @@ def _directions(direction: object, up: Sequence[float] | None) -> tuple[Array, A
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.999 else (0.0, 0.0, 1.0)
     upward = _check.unit("up", up)
     if np.linalg.norm(np.cross(upward, toward)) < 1e-6:
-        raise ValueError(_check.message("up", "a direction across the view", tuple(up)))
+        raise _check.value_error("up", "a direction across the view", tuple(up))
     return toward, upward
 
 
@@ -254,7 +252,7 @@ def common_bounds(name: str, meshes: Iterable[Mesh]) -> list[float]:
     parts = [part for mesh in meshes for part in all_blocks(mesh)]
     boxes = np.array([part.bounds for part in parts if part.n_points])
     if not boxes.size:
-        raise ValueError(_check.message(name, "a mesh with points", "empty meshes"))
+        raise _check.value_error(name, "a mesh with points", "empty meshes")
     low, high = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
     return [float(x) for pair in zip(low, high, strict=True) for x in pair]
 
@@ -273,8 +271,7 @@ def over_shoulder(camera: pv.Camera) -> tuple[float, float, float]:
         Direction, not of unit length.
     """
     if not hasattr(camera, "GetDirectionOfProjection"):
-        expected = "a pyvista.Camera or vtkCamera"
-        raise TypeError(_check.message("camera", expected, _check.describe(camera)))
+        raise _check.type_error("camera", "a pyvista.Camera or vtkCamera", camera)
     back = -np.array(camera.GetDirectionOfProjection())
     right = np.cross(np.array(camera.GetViewUp()), back)
     right /= np.linalg.norm(right)

@@ -236,7 +236,7 @@ class Component:
             live.name = path.lstrip("/") or str(drawing.get("name") or "")
             actors.append(self._add(plotter, live, shown, keywords_of))
         if not several and not actors:
-            raise ValueError(_check.message("mesh", "a mesh with points", "none"))
+            raise _check.value_error("mesh", "a mesh with points", "none")
         return actors if several else actors[0]
 
     def add_key(
@@ -334,11 +334,11 @@ class Component:
         size = _check.number("size", size, low=0.02, high=1.0)
         if not isinstance(mesh, pv.PolyData) or WORDS not in mesh.field_data:
             expected = "a mesh that vizlight.presets.key returned"
-            raise TypeError(_check.message("mesh", expected, _check.describe(mesh)))
+            raise _check.type_error("mesh", expected, mesh)
         lying = _check.boolean("lying", lying)
         if lying and len(mesh.field_data[WORDS]) == 1:
             expected = "False for a key that is a disc"
-            raise ValueError(_check.message("lying", expected, lying, "take the key of a bar"))
+            raise _check.value_error("lying", expected, lying, "take the key of a bar")
         renderer = plotter.renderer
         if _address(renderer) not in self._margins:
             ink = _check.color("color", color)
@@ -364,7 +364,7 @@ class Component:
                     options |= {"cmap": table, "title": title}
                 return lit_by, options | {"question": question}
         expected, remedy = "a scene, or a mesh with live light", "pass the scene of the picture"
-        raise ValueError(_check.message("scene", expected, None, remedy))
+        raise _check.value_error("scene", expected, None, remedy)
 
     def export_html(
         self,
@@ -499,7 +499,7 @@ class Component:
         ]
         if not visible_meshes:
             remedy = "add a mesh by plotter.vizlight.add_mesh"
-            raise ValueError(_check.message("plotter", "a mesh with live light", "none", remedy))
+            raise _check.value_error("plotter", "a mesh with live light", "none", remedy)
         if others := len(visible) - len(visible_meshes):
             _check.warn(f"{others} actors without light of vizlight are not in the page")
         # Until its first picture a plotter of PyVista has no view of its data, and a page takes
@@ -592,10 +592,10 @@ class Component:
     def _lit_by_us(self, actor: vtkActor) -> Live:
         expected = "one of plotter.vizlight.add_mesh"
         if not hasattr(actor, "GetAddressAsString"):
-            raise TypeError(_check.message("actor", expected, _check.describe(actor)))
+            raise _check.type_error("actor", expected, actor)
         live = self._live_of(actor)
         if live is None:
-            raise ValueError(_check.message("actor", expected, _check.describe(actor)))
+            raise _check.value_error("actor", expected, _check.describe(actor))
         return live
 
     def _live_of(self, actor: vtkActor) -> Live | None:
@@ -838,12 +838,9 @@ def add_recorded(
         None, and nothing is added, if the mesh has no such light, the record does not suffice, or
         the light cannot be computed in each fragment.
     """
-    arguments: tuple[object, object] = plotter, mesh
-    if not isinstance(arguments[0], pv.BasePlotter):
-        got = _check.describe(arguments[0])
-        raise TypeError(_check.message("plotter", "a pyvista.Plotter", got))
+    _check.instance("plotter", plotter, pv.BasePlotter, "a pyvista.Plotter")
     blocks.check(mesh)
-    if isinstance(arguments[1], pv.MultiBlock):
+    if isinstance(mesh, pv.MultiBlock):
         remedy = "add its blocks one after the other"
         raise TypeError(_check.message("mesh", "one dataset", "a MultiBlock", remedy))
     _check.text("name", name, expected="the name of the light")

@@ -526,8 +526,7 @@ def numbers(
         If the scene has more than 16 lights.
     """
     if len(lights) > MOST_LIGHTS:
-        got = str(len(lights))
-        raise ValueError(_check.message("lights", f"at most {MOST_LIGHTS} lights", got))
+        raise _check.value_error("lights", f"at most {MOST_LIGHTS} lights", str(len(lights)))
     # Light on colours of data is a factor, which the colours of a renderer must not hold already.
     held = (1.0, 1.0, WHITE) if data else (ambient, diffuse, specular_color)
     uniforms = [

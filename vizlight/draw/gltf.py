@@ -95,8 +95,7 @@ def save_gltf(
     """
     path = files.check_output(path, (".glb",))
     for name in options.keys() - LIGHT:
-        expected = "an option of vizlight.illuminate"
-        raise TypeError(_check.message("options", expected, repr(name)))
+        raise TypeError(_check.message("options", "an option of vizlight.illuminate", repr(name)))
     if scalars is not None:
         _check.text("scalars", scalars, expected="the name of an array")
     sources, used = sources_in_scene(mesh, scene, options)
@@ -115,7 +114,7 @@ def save_gltf(
         file.add(name or "mesh", surface, lit)
         fixed |= {seen} - {""}
     if not file.nodes:
-        raise ValueError(_check.message("mesh", "a mesh with points", "none"))
+        raise _check.value_error("mesh", "a mesh with points", "none")
     said = f"; {' and '.join(sorted(fixed))} as from the scene's view" if fixed else ""
     data = file.content(f"vizlight {__version__}", LEFT_OUT + said)
     written = files.replace_file(path, lambda draft: Path(draft).write_bytes(data))

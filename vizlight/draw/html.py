@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import contextlib
 import dataclasses
 import functools
 import html
@@ -670,17 +671,15 @@ def live_html(
     it within 4. Where something draws, the page has a picture for browsers without WebGL 2.
     """
     path = check_output(path, SUFFIXES)
-    eye: object = camera
-    if eye is not None and not isinstance(eye, pv.Camera):
-        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(eye)))
+    _check.instance("camera", camera, pv.Camera | None, "a pyvista.Camera")
     _check.integer("files", files, low=1, high=2)
     _check.text("frames", frames)
     steps: dict[float, Foreign] = dict(mesh) if isinstance(mesh, Mapping) else {0.0: mesh}
     if not steps:
-        raise ValueError(_check.message("mesh", "one mesh or more", "an empty mapping"))
+        raise _check.value_error("mesh", "one mesh or more", "an empty mapping")
     values = [_check.number("mesh", value) for value in steps]
     plotter: Foreign = pv.Plotter(off_screen=True, notebook=False)
-    try:
+    with contextlib.closing(plotter):
         chosen = _check.color("background", background)
         owners: list[int | None] = []
         for number, step in enumerate(steps.values()):
@@ -704,8 +703,6 @@ def live_html(
             path, shown, plotter, title=title, panel=panel, key=key, frames=label, files=files,
             source=source, auto=chosen is None and plotter.background_color == "white",
         )  # fmt: skip
-    finally:
-        plotter.close()
 
 
 def _lit_points(mesh: pv.DataSet | pv.MultiBlock) -> Keywords:
@@ -803,9 +800,7 @@ def page_text(
     """
     _check.text("title", title)
     panel, key = _check.boolean("panel", panel), _check.boolean("key", key)
-    if not isinstance(source, list | tuple):
-        got = _check.describe(source)
-        raise TypeError(_check.message("source", "a list of the words of a command", got))
+    _check.instance("source", source, list | tuple, "a list of the words of a command")
     page = Page(plotter.renderer)
     for each in shown:
         page.add(each)

@@ -23,8 +23,6 @@ from vizlight.vtk.letters import DIGIT
 #: Pieces of isolines, shape (N, 2) each, with their levels.
 Pieces: TypeAlias = list[tuple[Array, float]]
 
-__all__ = ["isolines"]
-
 #: Room around a number within its line, and least distance between numbers, and what is added
 #: to that between numbers of one line, in heights of letters.
 GAP, APART, FAR = 0.35, 4.0, 14.0
@@ -110,12 +108,11 @@ def isolines(
     >>> cartography.isolines(slope, "x", [-10, 0, 10], letters=1.0)["lines"].n_lines
     6
     """
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     letters = _check.positive("letters", letters)
     if letters < SMALLEST * mesh.length:
         expected = f"a height of at least {SMALLEST * mesh.length:g}"
-        raise ValueError(_check.message("letters", expected, f"{letters:g}"))
+        raise _check.value_error("letters", expected, f"{letters:g}")
     values = _check.coordinates("levels", levels).ravel()
     if words is not None:
         _check.iterable("words", words, "a text for each level")
@@ -126,7 +123,7 @@ def isolines(
     )
     if len(texts) != len(values):
         expected = f"a word for each of the {len(values)} levels"
-        raise ValueError(_check.message("words", expected, len(texts)))
+        raise _check.value_error("words", expected, len(texts))
     unit = None if extremes is None else _check.positive("extremes", extremes)
     pieces = contoured(mesh, name, values)
     return labelled(
@@ -289,8 +286,7 @@ def _lines_apart(
 ) -> Callable[[int, Array], Bools]:
     """Return the function that tells at which places a line other than a numbered one is near."""
     courses = list(pieces)
-    if not isinstance(clear_of, pv.PolyData | None):
-        raise TypeError(_check.message("clear_of", "a PolyData", _check.describe(clear_of)))
+    _check.instance("clear_of", clear_of, pv.PolyData | None, "a PolyData")
     if clear_of is not None and clear_of.n_lines:
         ids, ends = connectivity(clear_of.GetLines())
         flat = np.asarray(clear_of.points, dtype=np.float64)[ids, :2]
@@ -352,12 +348,12 @@ def contoured(mesh: pv.DataSet, name: str, levels: Array, *, longest: float = ma
     if name not in (*mesh.point_data, *mesh.cell_data):
         there = [*mesh.point_data, *mesh.cell_data]
         expected = f"the name of an array, {_words.one_of(there)}"
-        raise ValueError(_check.message("name", expected, _check.describe(name)))
+        raise _check.value_error("name", expected, _check.describe(name))
     mesh = records.averaged(mesh, name)
     values = np.asarray(mesh.point_data[name])
     if values.ndim != 1 or values.dtype.kind not in "biuf":
         expected, got = "an array of one component", f"{name!r} of {_check.describe(values)}"
-        raise ValueError(_check.message("name", expected, got))
+        raise _check.value_error("name", expected, got)
     there = np.isfinite(values) & np.isfinite(mesh.points).all(axis=1)
     if not there.any():
         return []

@@ -54,7 +54,7 @@ def sorted_out(
         if name in MATERIAL and scene is not None and value is not None:
             remedy = "pass Scene(material=Material(...))"
             expected = "the material of the scene, or no scene"
-            raise ValueError(_check.message(name, expected, f"both ({value})", remedy))
+            raise _check.value_error(name, expected, f"both ({value})", remedy)
     light = {name: value for name, value in options.items() if name in LIGHT}
     drawing = {ALIASES.get(name, name): options[name] for name in options if name not in LIGHT}
     return light, drawing
@@ -191,7 +191,7 @@ def _attached(
     counts = [mesh.n_cells, mesh.n_points] if of_cells else [mesh.n_points, mesh.n_cells]
     if rows.ndim not in (1, 2) or len(rows) not in counts:
         expected = f"{mesh.n_points} rows, one per point, or {mesh.n_cells}, one per cell"
-        raise ValueError(_check.message("scalars", expected, rows))
+        raise _check.value_error("scalars", expected, rows)
     copy = mesh.copy(deep=False)
     # Where there are as many cells as points, the rows are the points' unless cells are asked for.
     at_cells = len(rows) == mesh.n_cells and (of_cells or len(rows) != mesh.n_points)
@@ -208,8 +208,7 @@ def as_bytes(colors: Raw) -> NDArray[np.uint8]:
         If they have neither three nor four components.
     """
     if colors.ndim != 2 or colors.shape[1] not in (3, 4):
-        expected = "colours of 3 or 4 components for rgb=True"
-        raise ValueError(_check.message("scalars", expected, colors))
+        raise _check.value_error("scalars", "colours of 3 or 4 components for rgb=True", colors)
     if colors.dtype == np.uint8:
         return np.asarray(colors)
     shares = np.asarray(colors, dtype=np.float64)

@@ -8,11 +8,12 @@ from __future__ import annotations
 import dataclasses
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonCore import vtkCollection
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
 
 from vizlight import _check
@@ -33,10 +34,6 @@ from vizlight.shading.inputs import ArraySource, Layout, ShadingInputs
 from vizlight.shading.options import ShadingOptions
 from vizlight.shading.plan import Plan, decide
 from vizlight.vtk.arrays import are_colors, is_of_cells
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkCommonMath import vtkMatrix4x4
-
 
 #: Place where the light is computed.
 LightAt = Literal["auto", "points", "fragments"]

@@ -20,8 +20,6 @@ from vizlight.mesh import blocks, charts, dates, georeference, meaning, polyline
 from vizlight.vtk import letters
 from vizlight.vtk.letters import DIGIT, union
 
-__all__ = ["frame", "graticule"]
-
 #: Width of lines, length of ticks, and distance of words from them, in heights of letters.
 LINE, TICK, GAP = 0.06, 0.35, 0.3
 #: Distance between words of the bottom, in widths of the widest, and of the left, in digits.
@@ -185,8 +183,7 @@ def has_bar(mesh: pv.DataSet) -> bool:
 
 def _checked(mesh: pv.DataSet, letters: float, up: Sequence[float]) -> tuple[float, Array]:
     """Return the height of letters, and the rows right and up in the picture."""
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     _check.coordinates("mesh", mesh.bounds)
     letters = _check.positive("letters", letters)
     x, y, _ = _check.unit("up", (*_check.vector("up", up, direction=True, n=2), 0.0))

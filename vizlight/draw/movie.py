@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import itertools
 import os
@@ -95,13 +96,12 @@ def save(
     rest: Iterator[Foreign] = iter(frames)
     first = next(rest, None)
     if first is None:
-        raise ValueError(_check.message("frames", "one mesh, Panel or picture or more", "none"))
+        raise _check.value_error("frames", "one mesh, Panel or picture or more", "none")
     rest = itertools.chain([first], rest)
     if isinstance(first, np.ndarray):
         for name, value in (("camera", camera), ("picture", picture)):
             if value is not None:
-                expected = "none beside frames that are pictures"
-                raise ValueError(_check.message(name, expected, "one"))
+                raise _check.value_error(name, "none beside frames that are pictures", "one")
         _check_picture(first, first.shape)
         writer = _writer(path, fps, first.shape[1::-1])
         drawn: Iterator[Picture] = (_check_picture(each, first.shape) for each in rest)
@@ -330,7 +330,7 @@ def travel(
     if not moving:
         plotter.close()
         expected = "a plotter that shows streamlines with travel= and width='width'"
-        raise ValueError(_check.message("plotter", expected, "none of them"))
+        raise _check.value_error("plotter", expected, "none of them")
     plotter.reset_camera_clipping_range()
 
     def frame(i: int, count: int) -> None:
@@ -362,18 +362,15 @@ def _filmed(
             frame(i, count)
             yield np.array(plotter.screenshot(return_img=True))
 
-    try:
+    with contextlib.closing(plotter):
         writer = _writer(path, fps, plotter.window_size)
         with progress(name, count, show=progress_bar) as report:
             return writer(_counted(pictures(), report, 0))
-    finally:
-        plotter.close()
 
 
-def _check_movie(path: object) -> Path:
+def _check_movie(path: str | Path) -> Path:
     """Return the path of a movie or of a sequence that can be written."""
-    if not isinstance(path, str | os.PathLike):
-        raise TypeError(_check.message("path", "the path of a file", _check.describe(path)))
+    _check.instance("path", path, str | os.PathLike, "the path of a file")
     return check_output(Path(path), FORMATS)
 
 
@@ -382,35 +379,32 @@ def _check_picture(picture: object, shape: tuple[int, ...]) -> Picture:
     rgb = picture if isinstance(picture, np.ndarray) else None
     if rgb is None or rgb.dtype != np.uint8 or rgb.ndim != 3 or rgb.shape[2] != 3 or not rgb.size:
         expected = "pictures, each an array of uint8 of shape (height, width, 3)"
-        raise ValueError(_check.message("frames", expected, _check.describe(picture)))
+        raise _check.value_error("frames", expected, _check.describe(picture))
     if rgb.shape != shape:
         expected = f"pictures of one shape, {shape} as the first"
-        raise ValueError(_check.message("frames", expected, rgb.shape))
+        raise _check.value_error("frames", expected, rgb.shape)
     return rgb
 
 
 def _check_mesh(frame: object) -> object:
     """Return a frame that is a mesh or a Panel."""
     mesh = frame.mesh if isinstance(frame, render.Panel) else frame
-    if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
-        expected = "meshes or Panels, or pictures alone"
-        raise TypeError(_check.message("frames", expected, _check.describe(mesh)))
+    _check.instance("frames", mesh, Mesh, "meshes or Panels, or pictures alone")
     return frame
 
 
 def _drawing(picture: render.PlotterKeywords | None) -> render.PlotterKeywords:
     """Return the validated options of the pictures, except the camera."""
-    if not (picture is None or isinstance(picture, Mapping)):
-        raise TypeError(_check.message("picture", "a mapping", _check.describe(picture)))
+    _check.instance("picture", picture, Mapping | None, "a mapping")
     drawing: render.PlotterKeywords = {"size": (640, 480)}
     drawing.update(picture or {})
     if "camera" in drawing:
-        raise ValueError(_check.message("picture", "no camera", "one", "pass it as camera="))
+        raise _check.value_error("picture", "no camera", "one", "pass it as camera=")
     names = set(render.PlotterKeywords.__annotations__) - {"camera"}
     for name in drawing:
         if name not in names:
             expected = f"options of a picture ({', '.join(sorted(names))})"
-            raise ValueError(_check.message("picture", expected, repr(name)))
+            raise _check.value_error("picture", expected, repr(name))
     return drawing
 
 
@@ -423,7 +417,7 @@ def _draw_active(mesh: Mesh, drawing: render.PlotterKeywords) -> None:
     arrays = [np.asarray(part[name]) for part in parts if name in part.array_names]
     if not arrays or any(x.ndim == 2 and x.shape[1] != 3 for x in arrays):
         expected = "a scene, or a mesh with active scalars of 1 or 3 components"
-        raise ValueError(_check.message("scene", expected, f"none, and {name!r}"))
+        raise _check.value_error("scene", expected, f"none, and {name!r}")
     if "clim" not in drawing and name != DEFAULT_NAME and (ends := _range(arrays)):
         drawing["clim"] = ends
 
@@ -460,7 +454,7 @@ def _writer(path: Path, fps: float, size: object) -> Callable[[Iterator[Picture]
         # The films that all players show hold colour at half the width and the height.
         if any(side % 2 for side in pixels):
             expected = "an even width and height for MP4"
-            raise ValueError(_check.message("size", expected, f"{pixels[0]}x{pixels[1]}"))
+            raise _check.value_error("size", expected, f"{pixels[0]}x{pixels[1]}")
         # By default imageio scales a picture to multiples of 16 pixels, which blurs thin lines.
         options = {"fps": fps, "macro_block_size": 2}
     return lambda pictures: [replace_file(path, lambda to: _write_movie(to, pictures, options))]

@@ -73,7 +73,7 @@ class Guarded:
             if mode == "client":
                 expected = "'html', or server rendering for light that follows the camera"
                 remedy = "pass jupyter_backend='html' or 'server'"
-                raise ValueError(_check.message("jupyter_backend", expected, repr(mode), remedy))
+                raise _check.value_error("jupyter_backend", expected, repr(mode), remedy)
             # The backend "trame" has a button that would leave the drawing to the browser.
             options["mode"] = "server"
         return self.handler(plotter, **options)

@@ -197,8 +197,7 @@ def shader(
     tangents, normals = (_named(name, getattr(options, name)) for name in ("tangents", "normals"))
     if isinstance(options.conditioned, str):
         expected, remedy = "True or False in ParaView", "vizlight.illuminate lights the points"
-        got = repr(options.conditioned)
-        raise ValueError(_check.message("conditioned", expected, got, remedy))
+        raise _check.value_error("conditioned", expected, repr(options.conditioned), remedy)
     if normals is None and (tangents is None or options.conditioned):
         # The name that ParaView's own filters give to normals.
         normals = "Normals"
@@ -253,12 +252,12 @@ def save(
     sources, used = sources_in_scene(mesh, scene, options)
     if len(sources) != 1:
         expected, remedy = "one block", "write a script for each"
-        raise ValueError(_check.message("mesh", expected, f"{len(sources)} blocks", remedy))
+        raise _check.value_error("mesh", expected, f"{len(sources)} blocks", remedy)
     (source,) = sources
     if scalars is not None:
         _check.text("scalars", scalars, expected="the name of a point array")
     if scalars is not None and scalars not in source.mesh.point_data:
-        raise ValueError(_check.message("scalars", "the name of a point array", repr(scalars)))
+        raise _check.value_error("scalars", "the name of a point array", repr(scalars))
     if reason := unfit(source):
         raise ValueError(_unfit(reason))
     plan = _plan(used, source.inputs.layout, source.options)
@@ -279,10 +278,9 @@ def beside(path: Path) -> Path:
     return path.with_name(f"{path.stem}-paraview.vtp")
 
 
-def _named(name: str, value: object) -> str | None:
-    if value is not None and not isinstance(value, str):
-        expected = "the name of a point array that the data have in ParaView"
-        raise TypeError(_check.message(name, expected, _check.describe(value)))
+def _named(name: str, value: str | None) -> str | None:
+    expected = "the name of a point array that the data have in ParaView"
+    _check.instance(name, value, str | None, expected)
     return value
 
 
@@ -301,13 +299,13 @@ def _plan(scene: Scene, layout: Layout, options: ShadingOptions) -> Plan:
     """
     _check.instance("scene", scene, Scene)
     if scene.n not in (None, 3):
-        raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
+        raise _check.value_error("scene", "vectors of 3 components", scene.n)
     if reason := unfit_layout(layout, options):
         raise ValueError(_unfit(reason))
     cue = scene.depth_cue
     if cue is not None and (cue.front is None or cue.back is None):
         expected, remedy = "both ends for ParaView", "pass DepthCue(front=, back=), distances"
-        raise ValueError(_check.message("depth_cue", expected, "none or one", remedy))
+        raise _check.value_error("depth_cue", expected, "none or one", remedy)
     bare = dataclasses.replace(options, components=False)
     return decide(scene.replace(view=EYE), layout, bare)
 

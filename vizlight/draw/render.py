@@ -8,15 +8,17 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypedDict, get_args
+from typing import Literal, TypedDict, get_args
 
 import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
+from typing_extensions import Unpack
 from vtkmodules.vtkRenderingCore import vtkProp3D
 
 from vizlight import _check
 from vizlight._types import Array, ColorLike, Foreign, Keywords
+from vizlight.draw import strokes
 from vizlight.draw.backends import (
     Backend,
     BackendError,
@@ -31,14 +33,6 @@ from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on
 from vizlight.draw.scalar_bars import name_no_data
-from vizlight.draw.strokes import (
-    adapt,
-    directions,
-    enlarge,
-    lay_on_surfaces,
-    stroke_of,
-    widen,
-)
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
@@ -48,9 +42,6 @@ from vizlight.mesh.polylines import backdrop
 from vizlight.shading.display import NO_DATA, displayable
 from vizlight.shading.results import DEFAULT_NAME, VALID
 from vizlight.vtk.polylines import has_lines_only
-
-if TYPE_CHECKING:
-    from typing_extensions import Unpack
 
 __all__ = [
     "Backend",
@@ -99,8 +90,7 @@ class Panel:
 
     def __post_init__(self) -> None:
         _check.text("scalars", self.scalars, expected="the name of an array")
-        if not isinstance(self.title, str):
-            raise TypeError(_check.message("title", "a string", _check.describe(self.title)))
+        _check.instance("title", self.title, str, "a string")
 
 
 class PlotterKeywords(TypedDict, total=False):
@@ -309,12 +299,9 @@ def _check_panels(
         for item in items
     ]
     if not shown:
-        raise ValueError(_check.message("panels", "one mesh or more", "none"))
+        raise _check.value_error("panels", "one mesh or more", "none")
     for panel in shown:
-        if not isinstance(panel.mesh, Mesh):
-            raise TypeError(
-                _check.message("panels", "PyVista meshes or Panels", _check.describe(panel.mesh))
-            )
+        _check.instance("panels", panel.mesh, Mesh, "PyVista meshes or Panels")
         check(panel.mesh)
         for mesh in all_blocks(panel.mesh):
             array = array_of(mesh, panel.scalars)
@@ -323,11 +310,11 @@ def _check_panels(
                 expected = f"a point array or a cell array ({names})"
                 lit = panel.scalars == DEFAULT_NAME
                 remedy = "light the mesh first, by vizlight.illuminate" if lit else ""
-                raise ValueError(_check.message("scalars", expected, repr(panel.scalars), remedy))
+                raise _check.value_error("scalars", expected, repr(panel.scalars), remedy)
             if array.dtype.kind not in "biuf" or array.shape[1:] not in ((), (1,), (3,), (4,)):
                 expected = "real numbers of 1 component, or colours of 3 or 4"
                 got = f"{panel.scalars!r} of shape {array.shape} and type {array.dtype}"
-                raise ValueError(_check.message("scalars", expected, got))
+                raise _check.value_error("scalars", expected, got)
     return shown
 
 
@@ -336,15 +323,15 @@ def _check_options(
 ) -> tuple[float, float]:
     """Check options that are passed on to PyVista, whose messages do not name them; return clim."""
     if camera is not None and not hasattr(camera, "GetPosition"):
-        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
+        raise _check.type_error("camera", "a pyvista.Camera", camera)
     low, high = _check.limits("clim", clim)
     if low == high:
-        raise ValueError(_check.message("clim", "a lower and a higher number", clim))
+        raise _check.value_error("clim", "a lower and a higher number", clim)
     try:
         pv.LookupTable(cmap)
     except (TypeError, ValueError) as error:
         got = _check.describe(cmap)
-        raise ValueError(_check.message("cmap", "the name of a colour map", got)) from error
+        raise _check.value_error("cmap", "the name of a colour map", got) from error
     _check.choice("anti_aliasing", anti_aliasing, get_args(AntiAliasing), optional=True)
     return low, high
 
@@ -381,11 +368,8 @@ def save_png(
         partial file is left.
     """
     path = check_output(path, (".png",))
-    plotter = make_plotter(panels, **options)
-    try:
+    with contextlib.closing(make_plotter(panels, **options)) as plotter:
         return replace_file(path, partial(save_seen, plotter, path), doing="draw")
-    finally:
-        plotter.close()
 
 
 def pictures(
@@ -413,11 +397,8 @@ def pictures(
     """
     _check.iterable("sequence", sequence, "an iterable of meshes, Panels or lists of them")
     for panels in sequence:
-        plotter = make_plotter(panels, **options)
-        try:
+        with contextlib.closing(make_plotter(panels, **options)) as plotter:
             picture = np.array(plotter.screenshot(return_img=True))
-        finally:
-            plotter.close()
         yield picture
 
 
@@ -430,12 +411,12 @@ def pixels_of(size: object) -> list[int]:
         If the size is not two positive integers within the limits of anti-aliasing.
     """
     if _check.reals("size", size).shape != (2,):
-        raise ValueError(_check.message("size", "(width, height) in pixels", _check.describe(size)))
+        raise _check.value_error("size", "(width, height) in pixels", _check.describe(size))
     sides = _check.vector("size", size)
     pixels = [_check.integer("size", int(p) if p == int(p) else p, low=1) for p in sides]
     if max(pixels) > LARGEST_SIDE or pixels[0] * pixels[1] > LARGEST_AREA:
         limit = f"at most {LARGEST_SIDE} pixels per side and {LARGEST_AREA // 10**6} million in all"
-        raise ValueError(_check.message("size", limit, f"{pixels[0]}x{pixels[1]}"))
+        raise _check.value_error("size", limit, f"{pixels[0]}x{pixels[1]}")
     return pixels
 
 
@@ -454,10 +435,10 @@ def _draw(
             shown.SetPoints(pv.vtk_points(_lifted(np.asarray(mesh.points), camera, size)))
         if fragments and _add_in_fragments(plotter, shown, panel.scalars, width):
             continue
-        stroke = stroke_of(mesh, width | {"render_lines_as_tubes": False})
+        stroke = strokes.stroke_of(mesh, width | {"render_lines_as_tubes": False})
         if stroke != Stroke():
             # VTK hands a shader no other vector of lines than their normals.
-            shown["vizlight along"] = directions(mesh).astype(np.float32)
+            shown["vizlight along"] = strokes.directions(mesh).astype(np.float32)
             shown.point_data.active_normals_name = "vizlight along"
         of_points = panel.scalars in mesh.point_data
         values: Foreign = array_of(mesh, panel.scalars)
@@ -482,10 +463,10 @@ def _draw(
             show_scalar_bar=False,
         )
         if stroke != Stroke():
-            widen(actor, stroke)
-            adapt(actor, plotter.renderer, stroke, of_data=panel.scalars != DEFAULT_NAME)
+            strokes.widen(actor, stroke)
+            strokes.adapt(actor, plotter.renderer, stroke, of_data=panel.scalars != DEFAULT_NAME)
         else:
-            enlarge(actor, plotter.renderer)
+            strokes.enlarge(actor, plotter.renderer)
         if (records.read(mesh, panel.scalars) or {}).get("filter") == "tint":
             # The colours are drawn as they are; a scalar bar shows those before they were lit.
             table = unlit_colors(mesh, panel.scalars)
@@ -558,7 +539,7 @@ def canvas(
         with _window_of(backend, must_draw=_check.boolean("draws", draws)):
             plotter = pv.Plotter(off_screen=True, window_size=pixels, border=False)
     plotter.background_color = back
-    lay_on_surfaces(plotter.renderer)
+    strokes.lay_on_surfaces(plotter.renderer)
     # PyVista would look for the component among the entry points of all packages.
     from vizlight.draw import component  # noqa: F401
 
@@ -589,9 +570,7 @@ def check_plotter(plotter: object) -> None:
     ----------
     plotter : object
     """
-    if not isinstance(plotter, pv.BasePlotter):
-        expected, got = "a pyvista.Plotter", _check.describe(plotter)
-        raise TypeError(_check.message("plotter", expected, got))
+    _check.instance("plotter", plotter, pv.BasePlotter, "a pyvista.Plotter")
 
 
 def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
@@ -616,11 +595,9 @@ def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
     """
     check_plotter(plotter)
     path = check_output(path, IMAGES)
-    try:
+    with contextlib.closing(plotter):
         plotter.reset_camera_clipping_range()
         return replace_file(path, partial(save_seen, plotter, path), doing="draw")
-    finally:
-        plotter.close()
 
 
 #: Share of a picture below which data are hardly seen: a line as long as the picture is 1 / 800.

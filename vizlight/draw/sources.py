@@ -86,7 +86,7 @@ def _refuse_without_tangents(
     if QUESTIONS[question].of_tangents and any(map(_has_sides, blocks.all_blocks(mesh))):
         expected = f"vectors, whose {question} this scene shows"
         remedy = "pass tangents=NAME, or scene='shape' for the shape of the surface"
-        raise ValueError(_check.message("tangents", expected, None, remedy))
+        raise _check.value_error("tangents", expected, None, remedy)
 
 
 def sources_in_scene(
@@ -103,7 +103,7 @@ def sources_in_scene(
     sources, used = sources_of(mesh, optional_scene(scene), options)
     if used is None:
         remedy = "pass a Scene, or a mesh that a filter has lit"
-        raise ValueError(_check.message("scene", "a scene or the record of one", None, remedy))
+        raise _check.value_error("scene", "a scene or the record of one", None, remedy)
     return sources, used
 
 

@@ -93,8 +93,7 @@ def check_widths(mesh: pv.DataSet, name: str) -> None:
     array = mesh.point_data.get(name)
     if array is None or array.ndim > 1 or array.dtype.kind not in "biuf":
         got = repr(name) if array is None else f"{name!r} {_check.describe(array)}"
-        expected = "the name of a point array of one number per point"
-        raise ValueError(_check.message("width", expected, got))
+        raise _check.value_error("width", "the name of a point array of one number per point", got)
 
 
 def with_halo(stroke: Stroke, line_width: float, halo: float | str | None) -> Stroke:

@@ -8,14 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from vizlight._types import Value
 from vizlight.shading.algebra import Algebra
 from vizlight.shading.plan import Plan
-
-if TYPE_CHECKING:
-    import numpy as np
 
 _SIGNS = {
     "add": "+", "subtract": "-", "multiply": "*", "divide": "/", "true_divide": "/",

@@ -176,7 +176,7 @@ def _measure(got: Pixels, expected: Pixels, background: ColorLike | None) -> Dif
     from scipy.ndimage import binary_erosion, maximum_filter, minimum_filter, uniform_filter
 
     if got.shape != expected.shape:
-        raise ValueError(_check.message("got", f"{_size(expected)} pixels", _size(got)))
+        raise _check.value_error("got", f"{_size(expected)} pixels", _size(got))
     if (channels := _check.color("background", background)) is not None:
         back = 255.0 * np.array(pv.Color(channels).float_rgb)
     else:
@@ -213,7 +213,7 @@ def _measure(got: Pixels, expected: Pixels, background: ColorLike | None) -> Dif
 def _pixels(name: str, picture: Picture) -> Pixels:
     if isinstance(picture, pv.BasePlotter):
         if getattr(picture, "render_window", None) is None:
-            raise ValueError(_check.message(name, "an open plotter", "a closed one"))
+            raise _check.value_error(name, "an open plotter", "a closed one")
         shot = picture.screenshot(return_img=True)
         return np.array(shot, dtype=np.uint8)[..., :3]
     if isinstance(picture, str | Path):
@@ -222,15 +222,14 @@ def _pixels(name: str, picture: Picture) -> Pixels:
             with Image.open(picture) as image:
                 return np.array(image.convert("RGB"))
         except OSError as error:
-            raise ValueError(_check.message(name, "a picture", f"{str(picture)!r}")) from error
+            raise _check.value_error(name, "a picture", f"{str(picture)!r}") from error
     array: Foreign = picture
     try:
         array = np.asarray(array)
     except ValueError:  # rows of unequal length
         array = np.zeros(0)
     if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] not in (3, 4) or not array.size:
-        shape = "a plotter, a path or bytes of shape (h, w, 3)"
-        raise TypeError(_check.message(name, shape, _check.describe(picture)))
+        raise _check.type_error(name, "a plotter, a path or bytes of shape (h, w, 3)", picture)
     pixels: Pixels = array[..., :3]
     return pixels
 

@@ -77,7 +77,7 @@ def bas_relief(
     # Points that no face uses are not seen, and do not count for the extent.
     used = np.unique(triangles)
     if not len(used):
-        raise ValueError(_check.message("mesh", "faces of some area", "none"))
+        raise _check.value_error("mesh", "faces of some area", "none")
     centre = (vertices[used].min(axis=0) + vertices[used].max(axis=0)) / 2
     # From here on x is to the right, y up and z toward the eye.
     places = (vertices - centre) @ frame.T
@@ -85,7 +85,7 @@ def bas_relief(
     side = float((high - low)[:2].max())
     if not side > 0:
         expected, remedy = "an extent across the view", "turn direction"
-        raise ValueError(_check.message("mesh", expected, "none", remedy))
+        raise _check.value_error("mesh", expected, "none", remedy)
     step = side * (1 + 2 * margin) / (resolution - 1)
     # The tolerance prevents an additional node by rounding.
     count = np.ceil(((high - low)[:2] + 2 * margin * side) / step - 1e-6).astype(int) + 1
@@ -100,7 +100,7 @@ def bas_relief(
     there = np.isfinite(depth)
     if not there.any():
         expected, got = "a surface wider than a node", "a thinner one"
-        raise ValueError(_check.message("mesh", expected, got, "raise resolution"))
+        raise _check.value_error("mesh", expected, got, "raise resolution")
     # The farthest place that is seen has height 0, level with the ground beside the shape.
     depth -= depth[there].min()
     depth[~there] = 0
@@ -122,6 +122,6 @@ def _eye_frame(direction: VectorLike, up: VectorLike | None) -> Array:
     right = np.cross(_check.unit("up", up), toward)
     if np.linalg.norm(right) < 1e-6:
         remedy = "name another direction than the eye's"
-        raise ValueError(_check.message("up", "a direction across the view", tuple(up), remedy))
+        raise _check.value_error("up", "a direction across the view", tuple(up), remedy)
     right /= np.linalg.norm(right)
     return np.stack([right, np.cross(toward, right), toward])

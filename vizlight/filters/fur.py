@@ -78,10 +78,10 @@ class FurOptions(Options):
             if self.absorption is not None or self.density is not None:
                 expected = "no absorption or density"
                 remedy = "set the diameter of a vizlight.Bundle"
-                raise ValueError(_check.message("bundle", expected, "both", remedy))
+                raise _check.value_error("bundle", expected, "both", remedy)
             if self.bundle.lines is not None:
                 expected, remedy = "the fibres", "leave it out"
-                raise ValueError(_check.message("Bundle(lines=)", expected, "other lines", remedy))
+                raise _check.value_error("Bundle(lines=)", expected, "other lines", remedy)
         check_sides("auto", self.feature_angle)
         for option in ("bend", "curl", "turns"):
             value = getattr(self, option)
@@ -91,12 +91,12 @@ class FurOptions(Options):
             records.refuse_unnamed("toward", self.toward)
         if self.bend and self.toward is None:
             expected = "the direction of the bend, with bend="
-            raise ValueError(_check.message("toward", expected, None))
+            raise _check.value_error("toward", expected, None)
         shares = ("absorption", "density")
         _check.fields(self, _check.number, *shares, optional=True, low=0.0, high=1.0)
         if self.absorption is not None and self.density is not None:
             expected = "one of them: a share over the fur's length, or over a unit of length"
-            raise ValueError(_check.message("absorption, density", expected, "both"))
+            raise _check.value_error("absorption, density", expected, "both")
         _check.fields(self, _check.integer, "fibres", "seed", low=0)
         _check.fields(self, _check.integer, "segments", low=1)
 
@@ -271,13 +271,12 @@ def grow(
 ) -> Grown:
     """Return the fur of a surface; see :func:`fur`."""
     if scene.n not in (None, 3):
-        raise ValueError(_check.message("scene", "vectors of 3 components", scene.n))
+        raise _check.value_error("scene", "vectors of 3 components", scene.n)
     # Splitting at sharp edges makes more points, and only arrays that the mesh carries go with
     # them.
     if options.feature_angle is not None and np.asarray(options.length, dtype=object).ndim:
         expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
-        got = _check.describe(options.length)
-        raise TypeError(_check.message("length", expected, got, remedy))
+        raise _check.type_error("length", expected, options.length, remedy)
     surface = records.averaged(blocks.surface(surface, "surface"), options.length, options.toward)
     surface = split_where_computed(surface, options.feature_angle)
     skin = with_normals(surface, onlooker(scene), options.feature_angle)
@@ -285,7 +284,7 @@ def grow(
     _check.holds("fibres, segments", (options.fibres, options.segments + 1, 3))
     coat = _Coat(surface, skin, options)
     if options.fibres and not (len(coat.total) and coat.total[-1] > 0):
-        raise ValueError(_check.message("surface", "faces of some area", "none"))
+        raise _check.value_error("surface", "faces of some area", "none")
     hairs, inside = coat.fibres()
     # The skin is a surface of its own, which light reaches through the fur above it.
     below = ShadingInputs(
@@ -333,8 +332,7 @@ class _Coat:
             self.kind = np.result_type(skin.points.dtype, np.float32)
         size = float(skin.length)
         if not 1e-30 <= size <= 1e30 and skin.n_points:
-            remedy = "scale the mesh"
-            raise ValueError(_check.message("surface", "a size from 1e-30 to 1e30", size, remedy))
+            raise _check.value_error("surface", "a size from 1e-30 to 1e30", size, "scale the mesh")
         faces: Indices = np.asarray(skin.regular_faces, dtype=np.intp)
         # Along a Hilbert curve neighbouring seeds are neighbouring places, so that fibres stand
         # evenly whatever the order of the faces.
@@ -530,6 +528,5 @@ def _lengths(mesh: pv.PolyData, length: object) -> Array | float:
     if array.ndim == 0:
         return _check.number("length", array, low=0.0, high=LONGEST)
     if array.shape != (mesh.n_points,) or not np.all((array >= 0) & (array <= LONGEST)):
-        expected = f"{mesh.n_points} lengths of 0 or more"
-        raise ValueError(_check.message("length", expected, array))
+        raise _check.value_error("length", f"{mesh.n_points} lengths of 0 or more", array)
     return array.astype(np.float32, copy=False)

@@ -165,10 +165,8 @@ def _make(
     if isinstance(mesh, Solid):
         for option in ("normals", "tangents"):
             if getattr(options, option) is not None:
-                raise ValueError(
-                    _check.message(
-                        option, "None for a solid, which has its own", "an array", "leave it out"
-                    )
+                raise _check.value_error(
+                    option, "None for a solid, which has its own", "an array", "leave it out"
                 )
         bands = _of_solid(mesh, light)
         rgb = _rgb(bands, light) if scene.colored else None
@@ -258,9 +256,8 @@ def _of_mesh(mesh: pv.DataSet, light: _Light) -> pv.MultiBlock:
     angle = options.feature_angle
     if angle is not None and normals.are_computed(mesh, light_options) and mesh.n_points:
         # Points are split below, and only arrays that the mesh carries go with them.
-        if not isinstance(options.tangents, str | None):
-            expected, got = "a name beside feature_angle=", _check.describe(options.tangents)
-            raise TypeError(_check.message("tangents", expected, got, "attach the array"))
+        expected, remedy = "a name beside feature_angle=", "attach the array"
+        _check.instance("tangents", options.tangents, str | None, expected, remedy=remedy)
         whole = mesh if isinstance(mesh, pv.PolyData) else blocks.outer_surface(mesh)[0]
         mesh = normals.split_edges(whole, angle)
     surface, triangles, used, ids = _surface(mesh)
@@ -378,10 +375,8 @@ def _surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices, Indices, Indices |
     surface, ids = (mesh, None) if isinstance(mesh, pv.PolyData) else blocks.outer_surface(mesh)
     if surface.n_points and not (surface.GetNumberOfPolys() or surface.GetNumberOfStrips()):
         remedy = "pass a contour or the mesh's extract_surface()"
-        raise ValueError(
-            _check.message(
-                "mesh", "a surface with faces", f"a {type(mesh).__name__} without", remedy
-            )
+        raise _check.value_error(
+            "mesh", "a surface with faces", f"a {type(mesh).__name__} without", remedy
         )
     triangles, _ = subdivision.triangles(surface)
     used = np.zeros(surface.n_points, np.bool_)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 from numpy.typing import NDArray
 from vtkmodules.vtkCommonCore import vtkStringArray
 
@@ -19,11 +19,6 @@ from vizlight.scene.presets import AnyScene, preset_of, required_scene
 from vizlight.shading import engine
 from vizlight.shading.display import LEAST, Bytes, displayable, numerals, on_colors
 from vizlight.shading.options import Exponent
-
-if TYPE_CHECKING:
-    import pyvista as pv
-
-__all__ = ["color_below", "colors_of", "key", "key_picture", "question_of"]
 
 #: Name of the field array with the words that stand beside a key.
 WORDS = "words"
@@ -108,8 +103,6 @@ def key(
     >>> str(disc.field_data["words"][0])
     'direction on the screen'
     """
-    import pyvista as pv
-
     scene = required_scene(scene)
     topic = question_of(scene) if question is None else question
     steps: list[float] = []
@@ -118,7 +111,7 @@ def key(
         low, high = _check.limits("clim", clim)
         if not low < high or np.any(np.diff(values) <= 0):
             expected = "numbers that ascend, of a range that is given by clim"
-            raise ValueError(_check.message("levels", expected, list(values)))
+            raise _check.value_error("levels", expected, list(values))
         scale = np.log if isinstance(cmap, pv.LookupTable) and cmap.log_scale else np.asarray
         low, high, *places = scale([low, high, *values]).tolist()
         steps = [(place - low) / (high - low) for place in places]
@@ -175,8 +168,6 @@ def color_below(table: pv.LookupTable) -> Array | None:
 
 def _with_swatch(bar: pv.PolyData, color: Array) -> pv.PolyData:
     """Return a bar with a swatch before its lower end."""
-    import pyvista as pv
-
     right = -1 - GAP
     x, y = np.array([right - SWATCH, right, right, right - SWATCH]), BAR * np.array([-1, -1, 1, 1])
     swatch = pv.PolyData(np.stack([x, y, 0 * x], axis=1), [4, 0, 1, 2, 3])
@@ -201,8 +192,6 @@ def _names_of(cmap: ColorMap) -> list[str]:
 
 def annotated(cmap: ColorMap) -> list[tuple[float, str]]:
     """Return the numbers and the names of the kinds of a lookup table, in their order."""
-    import pyvista as pv
-
     if not isinstance(cmap, pv.LookupTable):
         return []
     count = cmap.GetNumberOfAnnotatedValues()
@@ -377,7 +366,7 @@ def _in_frame_of_eye(scene: Scene) -> Scene:
     for light in scene.lights:
         if light.position is not None:
             expected, remedy = "lights at infinity for a key", "give them directions"
-            raise ValueError(_check.message("scene", expected, light, remedy))
+            raise _check.value_error("scene", expected, light, remedy)
         # A light that follows the view is given in the frame of the eye already.
         if not light.follows_view and light.direction is not None:
             unit = np.divide(light.direction, np.abs(light.direction).max())

@@ -59,7 +59,7 @@ class PathlineOptions(LightOptions):
         records.refuse_unnamed("tangents", self.tangents)
         if self.conditioned and not isinstance(self.conditioned, str) and self.normals is None:
             expected = "the name of normals by normals= beside it, for lines have no surface"
-            raise ValueError(_check.message("conditioned", expected, "none"))
+            raise _check.value_error("conditioned", expected, "none")
         _check.fields(self, _check.positive, "tail", optional=True)
 
 
@@ -177,8 +177,7 @@ def pathlines(
     if named is None:
         named = first.point_data.active_vectors_name or meaning.only_vectors(first)
     if named is None:
-        expected = "the name of a point array of 3 components"
-        raise ValueError(_check.message("tangents", expected, None))
+        raise _check.value_error("tangents", "the name of a point array of 3 components", None)
     seeds = _seeds(first, steps.vectors(0, named), options)
     options = dataclasses.replace(options, tangents=named)
 
@@ -202,13 +201,13 @@ def _seeds(mesh: pv.DataSet, vectors: Array, options: PathlineOptions) -> Array:
         places: Array = _check.vectors("seeds", array, n=3)
         if places.ndim != 2 or not np.all(np.isfinite(places)):
             expected = "finite points of shape (M, 3)"
-            raise ValueError(_check.message("seeds", expected, _check.describe(seeds)))
+            raise _check.value_error("seeds", expected, _check.describe(seeds))
         return places
     count = _check.integer("seeds", seeds, low=1)
     moving = np.flatnonzero(np.any(vectors != 0, axis=1))
     if not len(moving):
         name = repr(options.tangents)
-        raise ValueError(_check.message("seeds", "points at which the vectors are not zero", name))
+        raise _check.value_error("seeds", "points at which the vectors are not zero", name)
     random = np.random.default_rng(options.seed)
     chosen = np.sort(random.choice(moving, min(count, len(moving)), replace=False))
     starts: Array = np.asarray(mesh.points, dtype=np.float64)[chosen]
@@ -265,7 +264,7 @@ def _lines(
         if i == 1 and not lines.n_points:
             expected = "points inside the mesh where the vectors are not zero"
             name = "seeds" if options.tail is None else "seeds, tail"
-            raise ValueError(_check.message(name, expected, "no line"))
+            raise _check.value_error(name, expected, "no line")
         if tangents is not None:
             records.attach_rows(lines, tangents, np.asarray(lines.point_data[name]))
         georeference.place_alike(lines, first)

@@ -12,7 +12,7 @@ import pyvista as pv
 from numpy.typing import ArrayLike
 
 from vizlight import _check, _progress
-from vizlight._types import VectorLike
+from vizlight._types import Given, VectorLike
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.nspace import projection
 from vizlight.mesh import blocks, records
@@ -54,11 +54,10 @@ class ProjectOptions(LightOptions):
         if not isinstance(positions, str) or not positions:
             got, remedy = _check.describe(positions), "attach it to the mesh and name it"
             raise TypeError(_check.message("positions", "the name of a point array", got, remedy))
-        turned: object = () if self.turned is None else self.turned
+        turned: Given = () if self.turned is None else self.turned
         turned = (turned,) if isinstance(turned, str) else turned
-        if not isinstance(turned, list | tuple):
-            expected = "the name of a point array, or a list of names"
-            raise TypeError(_check.message("turned", expected, _check.describe(turned)))
+        expected = "the name of a point array, or a list of names"
+        _check.instance("turned", turned, list | tuple, expected)
         distance = self.distance
         _check.set_fields(
             self,
@@ -279,7 +278,7 @@ def _check_space(
         if scene.n not in (None, lit):
             remedy = f"pass light={when!r} to light in {other}-space" if scene.n == other else ""
             expected = f"vectors of {lit} components for light={light!r}"
-            raise ValueError(_check.message("scene", expected, scene.n, remedy))
+            raise _check.value_error("scene", expected, scene.n, remedy)
 
 
 def _check_tangents(
@@ -289,13 +288,13 @@ def _check_tangents(
     if options.tangents is not None:
         return
     if job.frame is None:
-        raise ValueError(_check.message("frame", "tangents to light by", None, "or pass tangents="))
+        raise _check.value_error("frame", "tangents to light by", None, "or pass tangents=")
     for block in blocks.all_blocks(mesh):
         if job.frame not in block.point_data:
             got = "the points of a cut curve, which have no tangents"
-            raise ValueError(_check.message("scene", "a mesh that can be lit", got))
+            raise _check.value_error("scene", "a mesh that can be lit", got)
         if prefix + job.frame not in block.point_data:
             k = block.point_data[job.frame].shape[1] // block.point_data[job.positions].shape[1]
             got = f"a {k}-manifold, which fills 3-space and has no normals there"
             remedy = "pass light='before', or cut it by hyperplane="
-            raise ValueError(_check.message("light", "a curve or a surface", got, remedy))
+            raise _check.value_error("light", "a curve or a surface", got, remedy)

@@ -99,14 +99,14 @@ def relief_day(
     if sun is not None:
         if any(value is not None for value in hour_options.values()):
             expected = "sun alone, without directions, latitude, day and hours"
-            raise ValueError(_check.message("sun", expected, "both"))
+            raise _check.value_error("sun", expected, "both")
         directions = hour_options["directions"] = _from_angles(sun)
     toward = directions_of(hour_options)
     # A sun below the horizon lights nothing: its hours keep a column of 0.
     up = [way for way in toward if way[2] > 0]
     if not up:
         argument = "hours" if directions is None else "directions"
-        raise ValueError(_check.message(argument, "the sun above the horizon", "night"))
+        raise _check.value_error(argument, "the sun above the horizon", "night")
     # Each hour with sun is one light of the scene; only t is asked for, in which a highlight has no
     # part.
     scene = Scene(lights=[Light(direction=way) for way in up], material=Material(specular=0.0))
@@ -141,7 +141,7 @@ def _from_angles(sun: ArrayLike) -> Array:
     angles = np.atleast_2d(_check.floats("sun", sun))
     if angles.ndim != 2 or angles.shape[1] != 2:
         expected = "pairs of azimuth and altitude in degrees"
-        raise ValueError(_check.message("sun", expected, _check.describe(sun)))
+        raise _check.value_error("sun", expected, _check.describe(sun))
     return sky.toward(angles[:, 0], angles[:, 1])
 
 
@@ -153,7 +153,7 @@ def directions_of(options: Keywords) -> Array:
     if directions is None:
         if latitude is None or day is None:
             expected = "both, or directions="
-            raise ValueError(_check.message("latitude, day", expected, (latitude, day)))
+            raise _check.value_error("latitude, day", expected, (latitude, day))
         name, value = "hours", np.arange(4.0, 21.0) if hours is None else hours
         angle = math.radians(_check.number("latitude", latitude, low=-90.0, high=90.0))
         if 0 < abs(latitude) <= math.pi / 2:
@@ -161,12 +161,12 @@ def directions_of(options: Keywords) -> Array:
         toward: Array = np.atleast_2d(sky.directions(angle, day, value))
     elif latitude is not None or day is not None or hours is not None:
         expected = "directions alone, or latitude, day and hours"
-        raise ValueError(_check.message("directions", expected, "both"))
+        raise _check.value_error("directions", expected, "both")
     else:
         name, value = "directions", directions
         toward = np.atleast_2d(_check.vectors("directions", directions, n=3))
     if toward.ndim != 2 or not len(toward):
-        raise ValueError(_check.message(name, "a list of one or more", _check.describe(value)))
+        raise _check.value_error(name, "a list of one or more", _check.describe(value))
     if directions is not None:
         for i, way in enumerate(toward):
             _check.vector(f"directions[{i}]", way, direction=True)

@@ -65,8 +65,7 @@ class ReliefOptions(CasterOptions):
         if self.occlusion is not None:
             _check.text("occlusion", self.occlusion, expected="the name of a point array")
             if not self.lit:
-                got = repr(self.occlusion)
-                raise ValueError(_check.message("occlusion", "lit=True beside it", got))
+                raise _check.value_error("occlusion", "lit=True beside it", repr(self.occlusion))
         _check.fields(self, _check.number, "angular_diameter", low=0.0, high=1.0)
         _check.fields(self, _check.integer, "samples", low=1)
 
@@ -98,9 +97,9 @@ class Shadows(NamedTuple):
         # A light that is off casts no shadow and has no weight in the mean.
         lights = [light.seen_from(scene.view) for light in scene.lights if light.intensity > 0]
         if not lights:
-            raise ValueError(_check.message("scene", "a light of intensity above 0", "none"))
+            raise _check.value_error("scene", "a light of intensity above 0", "none")
         if scene.n not in (None, 3):
-            raise ValueError(_check.message("scene", "vectors of 3 components", f"{scene.n}"))
+            raise _check.value_error("scene", "vectors of 3 components", f"{scene.n}")
         # A raster is sampled from above, and does not need the points of edges apart.
         is_raster = options.raster is not None
         surface = mesh if is_raster else split_where_computed(mesh, options.feature_angle)
@@ -318,7 +317,7 @@ def relief_shadow(
         taken = sorted({DEFAULT_NAME, DEFAULT_NAME + VALID, *PARTS}.intersection(names))
         if taken:
             expected = "a name that the light does not use, with lit=True"
-            raise ValueError(_check.message("name", expected, repr(taken[0])))
+            raise _check.value_error("name", expected, repr(taken[0]))
         lighting.refuse_overwriting(
             [(mesh, "")], DEFAULT_NAME, scene, components=options.components
         )
@@ -386,7 +385,7 @@ def sun_direction(sun: object) -> Array:
     angles = _check.floats("sun", sun)
     if angles.shape != (2,):
         expected = "two angles in degrees, (azimuth, altitude)"
-        raise ValueError(_check.message("sun", expected, _check.describe(sun)))
+        raise _check.value_error("sun", expected, _check.describe(sun))
     return sky.toward(angles[0], angles[1])
 
 

@@ -105,8 +105,7 @@ def read(
             "light the mesh first, illuminate(mesh, scene, feature_angle=...), and pass the "
             "result with scene=None"
         )
-        got = repr(options.feature_angle)
-        raise ValueError(_check.message("feature_angle", expected, got, remedy))
+        raise _check.value_error("feature_angle", expected, repr(options.feature_angle), remedy)
     sky_mesh = with_sky([mesh], options.occlusion)[0] if sky_mesh is None else sky_mesh
     part = lighting.part_of(sky_mesh, path, scene, options)
     inputs, sided = part.inputs, part.sided
@@ -133,7 +132,7 @@ def refuse_following(sources: Sequence[Source], scene: Scene) -> None:
     dimmed = any(source.inputs.transmittance is not None for source in sources)
     if dimmed and any(light.follows_view and light.intensity > 0 for light in scene.lights):
         expected, got = "lights that stay beside it in a live light", "one that follows the view"
-        raise ValueError(_check.message("bundle", expected, got, "give the scene fixed lights"))
+        raise _check.value_error("bundle", expected, got, "give the scene fixed lights")
 
 
 def is_lit(mesh: pv.DataSet | pv.MultiBlock, name: str = DEFAULT_NAME) -> bool:
@@ -216,7 +215,7 @@ def _read_record(
         block_record = records.read(block, name)
         if block_record is None:
             expected = f"a record of {name!r} on each block"
-            raise ValueError(_check.message("mesh", expected, f"none on block {path or block}"))
+            raise _check.value_error("mesh", expected, f"none on block {path or block}")
         sources.append(_of_block(block, path, block_record, used))
     return sources, used
 
@@ -238,7 +237,7 @@ def _of_block(mesh: pv.DataSet, path: str, record: Mapping[str, Given], scene: S
     if filter_name not in readers:
         expected = "light that follows the view"
         remedy = "draw its arrays by plotter.add_mesh"
-        raise ValueError(_check.message("mesh", expected, f"light of {filter_name}", remedy))
+        raise _check.value_error("mesh", expected, f"light of {filter_name}", remedy)
     light = readers[filter_name](mesh, options)
     # The points of the result are split already.
     return read(mesh, path, scene, dataclasses.replace(light, feature_angle=None))
@@ -255,7 +254,7 @@ def _refuse_described(filter_name: str, options: Mapping[str, object]) -> None:
                 continue
             remedy = f"attach the array and name it by {option}=, or pass scene= and the options"
             expected = f"a record of {filter_name} that holds {option}"
-            raise ValueError(_check.message("mesh", expected, value, remedy))
+            raise _check.value_error("mesh", expected, value, remedy)
 
 
 def _of_lines(mesh: pv.DataSet, options: Keywords) -> LightOptions:
@@ -293,8 +292,6 @@ def shadows_of(
     mesh: pv.DataSet, options: Mapping[str, Given], scene: Scene
 ) -> tuple[Shadows, ReliefOptions]:
     """Return the shadows that a record tells of, before they are cast, and their options."""
-    from vizlight.filters.relief_shadow import ReliefOptions, Shadows
-
     _refuse_described("relief_shadow", options)
     relief_options = ReliefOptions.of({**options, "lit": True, "components": False})
     with warnings.catch_warnings():
@@ -327,7 +324,7 @@ def _of_fur(
     _refuse_described("fur", options)
     if not isinstance(mesh, pv.MultiBlock) or {"fibres", "skin"} - set(mesh.keys()):
         expected, remedy = "the fibres and the skin of fur", "pass the MultiBlock that fur returned"
-        raise ValueError(_check.message("mesh", expected, "one of them", remedy))
+        raise _check.value_error("mesh", expected, "one of them", remedy)
     fibres, skin = mesh["fibres"], mesh["skin"]
     assert isinstance(fibres, pv.DataSet)
     assert isinstance(skin, pv.PolyData)
@@ -354,14 +351,14 @@ def _light_again(
         stored = _check.floats(f"mesh, {name}", source.mesh.point_data[name])
         if stored.shape != shading.luminance.shape:
             expected = f"the {len(shading.luminance)} values of its record"
-            raise ValueError(_check.message(f"mesh, {name}", expected, stored, "light it again"))
+            raise _check.value_error(f"mesh, {name}", expected, stored, "light it again")
         # Written so that NaN differs, too.
         differs = ~(np.abs(shading.luminance - stored) <= SEEN)
         if np.count_nonzero(differs) > CHANGED * differs.size:
             share = f"other light at {np.mean(differs):.0%} of the points"
             expected = f"a mesh whose {name!r} matches its record"
             remedy = "light it again: points or arrays have changed"
-            raise ValueError(_check.message("mesh", expected, share, remedy))
+            raise _check.value_error("mesh", expected, share, remedy)
     return [
         Relit(source, inputs, fitted, shading)
         for source, (inputs, _), shading in zip(sources, parts, results, strict=True)

@@ -103,7 +103,7 @@ def satin(
     """
     options = SatinOptions.of(locals() | {"surface": None})
     if options.tangents is None:
-        raise ValueError(_check.message("tangents", "the name of a point array", None))
+        raise _check.value_error("tangents", "the name of a point array", None)
     traced, averaged = surface, False
     if isinstance(surface, pv.DataSet):
         name = str(options.tangents)

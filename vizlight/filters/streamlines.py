@@ -75,10 +75,7 @@ class StreamlineOptions(LightOptions):
         super().__post_init__()
         _check.fields(self, _check.number, "step", low=1e-6, high=1e3)
         _check.fields(self, _check.boolean, "confined", optional=True)
-        surface: object = self.surface
-        if surface is not None and not isinstance(surface, pv.DataSet):
-            expected, got = "a PyVista surface", _check.describe(surface)
-            raise TypeError(_check.message("surface", expected, got))
+        _check.instance("surface", self.surface, pv.DataSet | None, "a PyVista surface")
         tangents: object = self.tangents
         if isinstance(tangents, list | tuple):
             names = _names_of(tangents, pair=self.line_field)
@@ -91,20 +88,20 @@ class StreamlineOptions(LightOptions):
             _check.fields(self, _check.positive, length, optional=True)
         if self.travel is not None and self.stroke_length is None:
             remedy = "pass the distance between strokes as stroke_length="
-            raise ValueError(_check.message("travel", "stroke_length beside it", "none", remedy))
+            raise _check.value_error("travel", "stroke_length beside it", "none", remedy)
 
 
 def _names_of(names: Sequence[object], *, pair: bool) -> tuple[str, ...]:
     """Return the names of the arrays of a cross field, or of the components of vectors."""
     if len(names) not in ((2,) if pair else (2, 3)):
         expected = "one name of a point array, the names of components, or the two of a cross field"
-        raise ValueError(_check.message("tangents", expected, f"{len(names)} names"))
+        raise _check.value_error("tangents", expected, f"{len(names)} names")
     checked = tuple(
         _check.text("tangents", name, expected="the names of two point arrays") for name in names
     )
     if len({*checked}) != len(checked):
         remedy = "for a single line field pass its name alone"
-        raise ValueError(_check.message("tangents", "different arrays", repr(checked[0]), remedy))
+        raise _check.value_error("tangents", "different arrays", repr(checked[0]), remedy)
     return checked
 
 
@@ -320,7 +317,7 @@ def _as_strokes(
         lines = strokes.without_short(lines, options.min_length, _speed(lines, options))
         if not lines.n_lines:
             expected = f"a length that one of the {count} lines has"
-            raise ValueError(_check.message("min_length", expected, options.min_length))
+            raise _check.value_error("min_length", expected, options.min_length)
         lines.field_data["left_out"] = [count - lines.n_lines]
     speed = _speed(lines, options)
     point_arrays = {AGE: strokes.ages(lines, lines.point_data[tangents])}
@@ -350,7 +347,7 @@ def _velocities(
     """Return the parts of the vectors along lines, in the coordinates of the mesh."""
     if options.line_field or not isinstance(options.tangents, str):
         expected = "vectors, which have a sense"
-        raise ValueError(_check.message("travel", expected, "a line field", "leave travel out"))
+        raise _check.value_error("travel", expected, "a line field", "leave travel out")
     vectors: Array = np.asarray(lines.point_data[options.tangents], dtype=np.float64)
     rows = georeference.motion(mesh, lines, np.nan_to_num(vectors), np.ones(3))
     way = np.asarray(lines.point_data[tangents], dtype=np.float64)
@@ -380,7 +377,7 @@ def _check_mesh(mesh: object, argument: str) -> None:
     check_whole(mesh, argument)
     if mesh.n_points and not mesh.GetMaxSpatialDimension():
         remedy = "interpolate its vectors onto a grid, between points there are none"
-        raise ValueError(_check.message(argument, "a mesh with cells", "vertices alone", remedy))
+        raise _check.value_error(argument, "a mesh with cells", "vertices alone", remedy)
 
 
 def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions:
@@ -395,7 +392,7 @@ def _resolved(mesh: pv.DataSet, options: StreamlineOptions) -> StreamlineOptions
         surface = mesh_surface
     if surface is None and (confined or options.conditioned):
         what = "confined" if confined else "conditioned"
-        raise ValueError(_check.message("surface", f"a surface for {what} lines", None))
+        raise _check.value_error("surface", f"a surface for {what} lines", None)
     return dataclasses.replace(
         options,
         tangents=vectors,
@@ -441,7 +438,7 @@ def _traced(
     if not lines.n_points:
         expected = "points inside the mesh where the vectors are not zero"
         name = "seeds" if options.max_length is None else "seeds, max_length"
-        raise ValueError(_check.message(name, expected, "no line"))
+        raise _check.value_error(name, expected, "no line")
     places: Array = np.asarray(lines.points, dtype=np.float64)
     tangents: Array = np.array(lines.point_data[TRACED], dtype=np.float64) * (scale[0] / scale)
     if surface is not None:
@@ -513,7 +510,7 @@ def _lines(
     tracer = tracers.CellTracer(cells, normals, line_field=options.line_field)
     if not tracer.cells.extent > 0:
         expected = "cells of some area or volume between finite points"
-        raise ValueError(_check.message(argument, expected, "none"))
+        raise _check.value_error(argument, expected, "none")
     unsigned = options.tangents if options.line_field else None
     located = None if places is None else tracer.located(places)
     if options.spacing is None:
@@ -646,7 +643,7 @@ def _on_surface(
     if pair and name not in surface.point_data:
         expected = "two point arrays of the surface"
         remedy = "attach both directions of the cross field to the surface"
-        raise ValueError(_check.message("tangents", expected, repr(name), remedy))
+        raise _check.value_error("tangents", expected, repr(name), remedy)
     if name in surface.point_data:
         rows = array_of(surface, "tangents", name)
         if rows.shape[1] not in ((3,) if pair else (3, 6, 9)):
@@ -722,5 +719,5 @@ def _seeds(seeds: object, origin: Array, scale: Array) -> tuple[int, Array | Non
     places = (_check.vectors("seeds", positions, n=3) - origin) * scale
     if places.ndim != 2 or not len(places) or not np.all(np.isfinite(places)):
         what = "finite points of shape (M, 3), one or more"
-        raise ValueError(_check.message("seeds", what, _check.describe(seeds)))
+        raise _check.value_error("seeds", what, _check.describe(seeds))
     return len(places), places

@@ -214,7 +214,7 @@ def values_of(
         if scalars is None or scalars in records.all_made(mesh):
             data_names = [key for key in mesh.point_data if key not in records.all_made(mesh)]
             expected = f"the name of a point array, {_check.one_of(data_names)}"
-            raise ValueError(_check.message("scalars", expected, None))
+            raise _check.value_error("scalars", expected, None)
     if isinstance(scalars, str):
         _check.text("scalars", scalars, expected="the name of a point array")
         if scalars in mesh.point_data:
@@ -226,12 +226,12 @@ def values_of(
         else:
             names = _check.one_of([*mesh.point_data, *mesh.cell_data])
             expected = f"a point array or a cell array, {names}"
-            raise ValueError(_check.message("scalars", expected, repr(scalars)))
+            raise _check.value_error("scalars", expected, repr(scalars))
     else:
         array = _check.reals("scalars", scalars)
         if array.ndim not in (1, 2) or len(array) != mesh.n_points:
             expected = f"{mesh.n_points} rows, one per point"
-            raise ValueError(_check.message("scalars", expected, array))
+            raise _check.value_error("scalars", expected, array)
     if array.ndim == 2:
         if component is None and are_colors(array):
             return array
@@ -241,7 +241,7 @@ def values_of(
         column = _check.integer("component", component, low=0)
         if column >= array.shape[1]:
             expected = f"one of {array.shape[1]} components"
-            raise ValueError(_check.message("component", expected, component))
+            raise _check.value_error("component", expected, component)
         return array[:, column]
     if array.dtype.kind not in "iubf":
         way = (
@@ -249,8 +249,7 @@ def values_of(
             if array.dtype.kind == "c"
             else "np.unique(words, return_inverse=True)[1]"
         )
-        remedy = f"attach numbers, such as {way}"
-        raise TypeError(_check.message("scalars", "real numbers", _check.describe(array), remedy))
+        raise _check.type_error("scalars", "real numbers", array, f"attach numbers, such as {way}")
     return array
 
 
@@ -322,7 +321,7 @@ def color_table(
         if "n_colors" in str(error):
             raise
         expected = "a colour map or colours that PyVista knows"
-        raise ValueError(_check.message("cmap", expected, f"{cmap!r} ({error})")) from error
+        raise _check.value_error("cmap", expected, f"{cmap!r} ({error})") from error
     table: pv.LookupTable = mapper.lookup_table
     if ends is not None and not isinstance(cmap, pv.LookupTable):
         low, high = ends
@@ -378,7 +377,7 @@ def _known_color(name: str, color: ColorLike | None) -> pv.Color | None:
             return pv.Color(color)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         expected = "a colour that PyVista knows"
-        raise ValueError(_check.message(name, expected, _check.describe(color))) from error
+        raise _check.value_error(name, expected, _check.describe(color)) from error
 
 
 def map_colors(table: pv.LookupTable, values: Raw, *, components: Literal[3, 4] = 4) -> Bytes:
@@ -428,7 +427,7 @@ def _light_of(
     if not relight.is_lit(lit, light):
         expected = "a mesh with the light of a filter and its record"
         remedy = "light it by vizlight.illuminate first"
-        raise ValueError(_check.message("lit", expected, f"no {light!r} with a record", remedy))
+        raise _check.value_error("lit", expected, f"no {light!r} with a record", remedy)
     stored = [_stored(mesh, light) for mesh in meshes]
     carried = [entry for entry in stored if entry is not None]
     if len(carried) == len(meshes):
@@ -520,7 +519,7 @@ def unlit_colors(mesh: pv.DataSet | pv.MultiBlock, /, name: str = RGB) -> pv.Loo
     record = records.provenance(mesh, name)
     if record.get("filter") != "tint":
         got = f"the result of {record.get('filter')}"
-        raise ValueError(_check.message("name", "the result of tint", got))
+        raise _check.value_error("name", "the result of tint", got)
     options = record["options"]
     table = pv.LookupTable()
     table.values = np.array([list(bytes.fromhex(c[1:])) for c in options["colors"]], np.uint8)

@@ -59,7 +59,7 @@ def source(
     if (direction is None) == (position is None):
         expected = "either direction= (toward the light) or position="
         got = "neither" if direction is None else "both"
-        raise ValueError(_check.message("direction", expected, got, "pass one of them"))
+        raise _check.value_error("direction", expected, got, "pass one of them")
     low = _check.number("ambient", ambient, low=0.0, high=_check.LARGEST)
     scale = _check.number("diffuse", diffuse, low=0.0, high=_check.LARGEST)
     power = _check.number("power", power, low=0.0, high=_check.LARGEST)
@@ -67,7 +67,7 @@ def source(
     if direction is not None:
         if fading != (1.0, 0.0, 0.0):
             expected = "a light with position="
-            raise ValueError(_check.message("attenuation", expected, "a light at infinity"))
+            raise _check.value_error("attenuation", expected, "a light at infinity")
         return ShapeLight(_check.unit("direction", direction), math.inf, low, scale, power, fading)
     offset = triple("position", position) - center
     size = math.hypot(*offset)

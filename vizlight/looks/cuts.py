@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TypeVar
 
 from vizlight import _check
-from vizlight._words import AXES, describe, message, numbers
+from vizlight._types import Vector
+from vizlight._words import AXES, describe, numbers, type_error, value_error
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import TypeVar
-
-    from vizlight._types import Vector
-
-    T = TypeVar("T")
+T = TypeVar("T")
 
 PLANE = "NORMAL:OFFSET, 3 numbers and one, such as 0,0,1:2.5 or z:2.5"
 RANGE = "NAME:LOW:HIGH, such as Temp:300:600 or Temp:300:"
@@ -47,7 +43,7 @@ def plane(name: str, value: object) -> tuple[Vector, Vector]:
     normal = AXES.get(text.lower()) or numbers(text)
     distance = numbers(offset, (1,))
     if not (any(normal) and distance):
-        raise ValueError(message(name, PLANE, describe(value)))
+        raise value_error(name, PLANE, describe(value))
     # The offset is a distance, whatever the length of the normal.
     length = math.hypot(*normal)
     return normal, tuple(distance[0] * component / length for component in normal)
@@ -77,7 +73,7 @@ def interval(name: str, value: object) -> tuple[str, float, float]:
             for end in ends
         )
         if low > high:
-            raise ValueError(message(name, "a lower and a higher number", describe(value)))
+            raise value_error(name, "a lower and a higher number", describe(value))
         return _check.text(name, array, expected="the name of an array"), low, high
     # From the right, as the name of an array may have colons of its own.
     array, *texts = value.rsplit(":", 2)
@@ -86,7 +82,7 @@ def interval(name: str, value: object) -> tuple[str, float, float]:
         for text, empty in zip(texts, (-math.inf, math.inf), strict=False)
     ]
     if not (len(bounds) == 2 and all(bounds) and any(texts) and bounds[0] <= bounds[1]):
-        raise ValueError(message(name, RANGE, describe(value)))
+        raise value_error(name, RANGE, describe(value))
     return array, bounds[0][0], bounds[1][0]
 
 
@@ -108,7 +104,7 @@ def several(name: str, value: object, read: Callable[[str, object], T]) -> list[
 def _parts(name: str, value: object, count: int, expected: str) -> tuple[object, ...]:
     """Return the parts of a tuple or a list of some length."""
     if not isinstance(value, tuple | list):
-        raise TypeError(message(name, expected, describe(value)))
+        raise type_error(name, expected, value)
     if len(value) != count:
-        raise ValueError(message(name, expected, describe(value)))
+        raise value_error(name, expected, describe(value))
     return tuple(value)

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 import pyvista as pv
 
+from vizlight._types import Foreign, Indices, Keywords
 from vizlight.filters.illuminate import illuminate
 from vizlight.looks.framing import seen_triangles
 from vizlight.mesh import blocks, records
+from vizlight.scene import Scene
 from vizlight.shading.display import exposure_of
 from vizlight.shading.results import part_name
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from vizlight._types import Foreign, Indices, Keywords
-    from vizlight.scene import Scene
 
 #: Name of the light of the triangles that are measured.
 LIGHT = "seen"

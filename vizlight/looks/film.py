@@ -2,37 +2,32 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
 
 import vizlight
 from vizlight import _check, files
+from vizlight._types import Array, Foreign, Given, Keywords
 from vizlight.draw import movie
 from vizlight.looks import options as look_options
 from vizlight.looks.contents import Contents
 from vizlight.looks.options import READ
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.recipes import fields
-from vizlight.looks.recipes.drawing import GROUND, ON_BANDS, ON_GROUND, colors_in
+from vizlight.looks.recipes.drawing import GROUND, ON_BANDS, ON_GROUND, Layer, colors_in
 from vizlight.looks.steps import Step, in_order
 from vizlight.looks.wishes import Wishes
 from vizlight.mesh import meaning, series
 from vizlight.mesh.particles import Drift
 from vizlight.model import kernels
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
-
-    import pyvista as pv
-    from numpy.typing import NDArray
-
-    from vizlight._types import Array, Foreign, Given, Keywords
-    from vizlight.looks.recipes.drawing import Layer
-
-    Picture = NDArray[np.uint8]
+Picture = NDArray[np.uint8]
 
 __all__ = ["save"]
 
@@ -95,10 +90,10 @@ def save(
     """
     read = {name: options[name] for name in READ if name in options}
     if "time" in read:
-        raise ValueError(_check.message("time", "none beside a movie of all steps", "one"))
+        raise _check.value_error("time", "none beside a movie of all steps", "one")
     times = series.of(files.read(data, **read))
     if not times:
-        raise ValueError(_check.message("data", "a series of steps", "one mesh"))
+        raise _check.value_error("data", "a series of steps", "one mesh")
     _check.integer("per_step", per_step, low=1, high=100)
     fps = _pace(times) if fps is None else _check.number("fps", fps, low=0.01, high=100.0)
     pictures = _Pictures(_looks(data, question, times, options), times, per_step)
@@ -255,7 +250,7 @@ class _Flow:
 
 def _drawn(plotter: pv.Plotter, layers: Iterable[Layer | None]) -> Iterator[Picture]:
     """Yield the pictures of a plotter with each of some layers, and close it."""
-    try:
+    with contextlib.closing(plotter):
         for layer in layers:
             actor = None
             if layer is not None:
@@ -266,8 +261,6 @@ def _drawn(plotter: pv.Plotter, layers: Iterable[Layer | None]) -> Iterator[Pict
             yield np.array(plotter.screenshot(return_img=True))
             if actor is not None:
                 plotter.remove_actor(actor, render=False)
-    finally:
-        plotter.close()
 
 
 def step(look: vizlight.Look, path: Path) -> Step | None:

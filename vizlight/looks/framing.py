@@ -8,20 +8,16 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
 import scipy
 
-from vizlight.looks.contents import LAYER
+from vizlight._types import Array, Bools, Indices, Vector
+from vizlight.looks.contents import LAYER, Contents
 from vizlight.mesh import meaning
 from vizlight.mesh.creases import creases
 from vizlight.vtk.cells import connectivity
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, Bools, Indices, Vector
-    from vizlight.looks.contents import Contents
 
 #: Most points or cells that are looked at.
 SAMPLE = 20_000

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pyvista as pv
 
+from vizlight._types import Array, Indices
 from vizlight.vtk.cells import connectivity
-
-if TYPE_CHECKING:
-    from vizlight._types import Array, Indices
 
 #: Most cells that are looked at, number of levels, and shares of the values at their ends.
 SAMPLE, LEVELS, ENDS = 20_000, 48, (0.02, 0.98)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import warnings
 from dataclasses import dataclass, replace
@@ -13,7 +14,7 @@ import pyvista as pv
 
 from vizlight import _check, files
 from vizlight._questions import QUESTIONS
-from vizlight._words import message, one_of
+from vizlight._words import one_of, type_error, value_error
 from vizlight.draw.render import IMAGES, BackendError
 from vizlight.draw.vector import VECTORS
 from vizlight.looks import film, map_parts, together
@@ -206,7 +207,7 @@ class Look:
             if moving is None and drawing.is_flat:
                 expected = "a picture or a page of a map on which nothing moves"
                 remedy = "name a file that ends in .png, .svg or .html"
-                raise ValueError(message("path", expected, repr(str(path)), remedy))
+                raise value_error("path", expected, repr(str(path)), remedy)
             shown = replace(self, drawing=moving or drawing.of_turns)
             plotter, steps = shown._picture()
             way = "movie.orbit" if moving is None else "movie.travel"
@@ -319,11 +320,8 @@ class Look:
         Figures of light are left out where no key of the picture explains its light, but for the
         lamps of a room, in which everybody has seen things.
         """
-        plotter = self.plotter()
-        try:
+        with contextlib.closing(self.plotter()) as plotter:
             figures: Legibility = plotter.vizlight.legibility()
-        finally:
-            plotter.close()
         return figures.without(*self._unexplained)
 
     @property
@@ -349,11 +347,8 @@ class Look:
 
         from PIL import Image
 
-        plotter = self.plotter()
-        try:
+        with contextlib.closing(self.plotter()) as plotter:
             picture = Image.fromarray(np.asarray(plotter.screenshot(return_img=True)))
-        finally:
-            plotter.close()
         data = io.BytesIO()
         picture.save(data, "PNG")
         text = base64.b64encode(data.getvalue()).decode()
@@ -441,7 +436,7 @@ def decide(data: object, wishes: Wishes) -> Look:
         data = [blocks.one_grid(part) for part in blocks.by_dimension(data)] or data
     several = list(data) if isinstance(data, list | tuple) else [data]
     if not several:
-        raise ValueError(message("data", "a mesh, a file, or several", "none"))
+        raise value_error("data", "a mesh, a file, or several", "none")
     joined = _of_components(several, wishes)
     if joined is not None:
         wishes = replace(wishes, part={**wishes.part, "overlay": several[1:]})
@@ -601,11 +596,11 @@ def read_steps(data: object, wishes: Wishes) -> list[Step]:
             "pyvista.StructuredGrid(x, y, z) of a surface; then mesh['name'] = values"
         )
         remedy = remedy if hasattr(data, "__array__") else ""
-        raise TypeError(message("data", expected, _check.describe(data), remedy))
+        raise type_error("data", expected, data, remedy)
     if keywords:
         name, value = next(iter(keywords.items()))
         expected = "no such option beside a mesh, which is read already"
-        raise ValueError(message(name, expected, _check.describe(value)))
+        raise value_error(name, expected, _check.describe(value))
     return [Step("mesh", "-", mesh)]
 
 
@@ -623,10 +618,10 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     mesh = step.run()
     notes += [text] if (text := meaning.line(mesh)) else []
     if not mesh.n_points:
-        raise ValueError(message("data", "a mesh with points", "none"))
+        raise value_error("data", "a mesh with points", "none")
     if blocks.is_too_far(mesh):
         expected = f"points within {_check.FARTHEST:g} of the origin"
-        raise ValueError(message("data", expected, str(mesh.bounds), "scale the mesh"))
+        raise value_error("data", expected, str(mesh.bounds), "scale the mesh")
     if not mesh.n_cells and not isinstance(mesh, pv.PolyData):
         # VTK draws points that are cells.
         step = Step("points", ".cast_to_poly_points", step)
@@ -709,7 +704,7 @@ def _explicit(
         question = "shadow"
     if question not in {**QUESTIONS, **_OF_FILTERS}:
         expected = f"a question that these data answer, {one_of([*QUESTIONS, *_FILTERS])}"
-        raise ValueError(message("question", expected, repr(question)))
+        raise value_error("question", expected, repr(question))
     recipe, roles, needed = _OF_FILTERS.get(question) or _of_preset(question)
     chosen = array if array is not None and array.role in roles else contents.first(*roles)
     if question == "relief" and chosen is None:
@@ -720,7 +715,7 @@ def _explicit(
         got = f"{array.name!r} with {array.role}" if array is not None else arrays or "no array"
         is_of_tangents = question in QUESTIONS and QUESTIONS[question].of_tangents
         remedy = "take question='shape'" if is_of_tangents else ""
-        raise ValueError(message("array", f"{' or '.join(roles)} for {question!r}", got, remedy))
+        raise value_error("array", f"{' or '.join(roles)} for {question!r}", got, remedy)
     kind = next(rule.shown for rule in RULES if rule.fits(contents))
     rule = Rule(kind, lambda _: True, question, roles, recipe, f"{question} was asked for")
     return rule, Case(data, contents, wishes, question, chosen)
@@ -776,12 +771,12 @@ def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
         there = [*contents.mesh.point_data, *contents.mesh.cell_data]
         if name in there:
             expected = "an array of finite numbers, or of 3 components that are not all 0"
-            raise ValueError(message(option, expected, repr(name)))
+            raise value_error(option, expected, repr(name))
         expected = f"the name of an array, {one_of(there)}"
-        raise ValueError(message(option, expected, repr(name)))
+        raise value_error(option, expected, repr(name))
     if option == "tangents" and named.role != "vectors":
         got = f"{name!r} with {named.role}"
-        raise ValueError(message(option, "vectors, or names U,V of their components", got))
+        raise value_error(option, "vectors, or names U,V of their components", got)
     return named
 
 

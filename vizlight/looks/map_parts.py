@@ -68,7 +68,7 @@ def named(parts: object) -> tuple[str, ...]:
     names = () if isinstance(parts, str) and parts == "none" else names
     if not isinstance(names, list | tuple) or not all(name in PARTS for name in names):
         expected = f"names of {', '.join(PARTS)}, or 'none'"
-        raise ValueError(_check.message("map_parts", expected, repr(parts)))
+        raise _check.value_error("map_parts", expected, repr(parts))
     return tuple(names)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, files
-from vizlight._words import message, one_of
+from vizlight._words import one_of, value_error
 from vizlight.draw import render
 from vizlight.filters import tint
 from vizlight.filters.streamlines import vectors_by_default
@@ -55,9 +55,9 @@ def checked(options: Mapping[str, Given]) -> Keywords:
         If a value does not fit, or two options do not go together.
     """
     if options.get("level") is not None and options.get("contour") is None:
-        raise ValueError(message("level", "contour with it", "it alone"))
+        raise value_error("level", "contour with it", "it alone")
     if options.get("slice") is not None and options.get("contour") is not None:
-        raise ValueError(message("slice", "no contour beside it", "both"))
+        raise value_error("slice", "no contour beside it", "both")
     return {
         name: value if value is None or name not in CHECKS else CHECKS[name](name, value)
         for name, value in options.items()
@@ -281,7 +281,7 @@ def check_flow(file: object, mesh: pv.DataSet, name: str | None) -> None:
     if having:
         expected = f"a step in which {name!r} is not zero everywhere"
         remedy = f"pass --time with one of {series.listed(having)}"
-        raise ValueError(message("time", expected, f"{mesh.field_data[series.TIME][0]:g}", remedy))
+        raise value_error("time", expected, f"{mesh.field_data[series.TIME][0]:g}", remedy)
 
 
 def _moves(mesh: pv.DataSet, name: str | None) -> bool:
@@ -298,9 +298,7 @@ def _kept(mesh: Step, name: str, low: float, high: float) -> Step:
     grid = mesh.run()
     present = [*grid.point_data, *grid.cell_data]
     if name not in present:
-        raise ValueError(
-            message("threshold", f"the name of an array, {one_of(present)}", repr(name))
-        )
+        raise value_error("threshold", f"the name of an array, {one_of(present)}", repr(name))
     # PyVista takes two ends, or one value and the side to keep: the upper one by default.
     ends: object = (low, high)
     if math.isinf(low) or math.isinf(high):

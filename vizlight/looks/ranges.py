@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from vizlight._types import Array
 from vizlight.draw.ticks import even_ends
 from vizlight.maps import TWO_SIDED
-
-if TYPE_CHECKING:
-    from vizlight._types import Array
 
 #: Distances of a quartile from the median at which values are far outside, 3 deviations of a normal
 #: distribution, the largest share of them that is clipped, and the share of the bar that they take.

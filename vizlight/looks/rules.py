@@ -6,18 +6,14 @@ shows, the recipe of ``recipes`` that draws it, and the words that say why.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from vizlight.looks.contents import Contents, Named, Role
 from vizlight.looks.recipes import fields, lines, reliefs, surfaces, volumes
+from vizlight.looks.recipes.drawing import Recipe
 from vizlight.mesh import globes, molecules
 from vizlight.vtk.cells import dimensions
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from vizlight.looks.contents import Contents, Named, Role
-    from vizlight.looks.recipes.drawing import Recipe
 
 
 @dataclass(frozen=True)

@@ -4,25 +4,20 @@ from __future__ import annotations
 
 import inspect
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pyvista as pv
+from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Foreign, Given, Keywords
 from vizlight.draw import keywords
+from vizlight.draw.live import LightAt
 from vizlight.draw.render import IMAGES
 from vizlight.files import check_output
 from vizlight.filters.sky import SKY
 from vizlight.looks.look import look
 from vizlight.scene.keywords import named
-from vizlight.scene.presets import optional_scene
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from vizlight._types import Foreign, Given, Keywords
-    from vizlight.draw.live import LightAt
-    from vizlight.scene.presets import AnyScene
+from vizlight.scene.presets import AnyScene, optional_scene
 
 __all__ = ["plot"]
 
@@ -100,7 +95,7 @@ def plot(
     keywords.sorted_out("mesh.vizlight.plot", options, scene, more=named)
     size = None if window_size is None else _size(window_size)
     if camera is not None and not hasattr(camera, "GetPosition"):
-        raise TypeError(_check.message("camera", "a pyvista.Camera", _check.describe(camera)))
+        raise _check.type_error("camera", "a pyvista.Camera", camera)
     if isinstance(screenshot, str | Path):
         screenshot = check_output(screenshot, IMAGES)
     if jupyter_backend is not None:
@@ -144,7 +139,7 @@ def _size(window_size: object) -> list[int]:
     sides = _check.vector("window_size", window_size)
     if len(sides) != 2 or not all(1 <= side <= 1 << 14 for side in sides):
         expected = "(width, height), each from 1 to 16384 pixels"
-        raise ValueError(_check.message("window_size", expected, sides))
+        raise _check.value_error("window_size", expected, sides)
     return [int(side) for side in sides]
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import vizlight
 from vizlight import _words
-from vizlight._words import message
+from vizlight._words import value_error
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -72,7 +72,7 @@ class Step:
                 warnings.simplefilter("ignore")
             result = self._called()
         if self.asked[0] and not result.n_points:
-            raise ValueError(message(self.asked[0], "a value that leaves points", self.asked[1]))
+            raise value_error(self.asked[0], "a value that leaves points", self.asked[1])
         for key, value in self.attributes.items():
             setattr(result, key, value)
         return result

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vizlight import _check
-from vizlight._words import AXES, message
+from vizlight._words import AXES, value_error
 from vizlight.draw.cameras import VIEW_ANGLE
 from vizlight.draw.keywords import LIGHT
 from vizlight.draw.margins import LETTERS, data_share
@@ -200,7 +200,7 @@ class Wishes:
             toward = direction(self.view, n=None)
         if len(toward) not in (3, n):
             expected = "three numbers x,y,z" + f" or {n} numbers" * (n != 3)
-            raise ValueError(message("view", expected, repr(toward)))
+            raise value_error("view", expected, repr(toward))
         camera = Step("", "render.camera_on", BOX, toward[:3], **_given(up=self.eye.get("up")))
         view = Step("", "vizlight.View", direction=(*toward, *(0.0,) * (n - len(toward))))
         return (self.make_scene or plain_scene)("none given", view, camera, n)
@@ -330,7 +330,7 @@ class Wishes:
             wide = float(flat.bounds_size[0]) if georeference.has_degrees(flat) else None
             got = "no map in degrees" if wide is None else f"one of {wide:.4g} degrees"
             expected = f"a map of the whole earth, of at least {GLOBAL:g} degrees of longitude,"
-            raise ValueError(message("globe", f"{expected} for a globe", got, "leave out globe"))
+            raise value_error("globe", f"{expected} for a globe", got, "leave out globe")
         heights = self.part.get("warp")
         if heights is None and self.part.get("exaggeration") is not None:
             heights = height_grids.heights_name(flat)
@@ -374,7 +374,7 @@ def direction(view: object, *, n: int | None = 3) -> Vector:
     if isinstance(view, str):
         if view not in VIEWS:
             expected = f"a direction (x, y, z), a camera, or one of {', '.join(map(repr, VIEWS))}"
-            raise ValueError(message("view", expected, repr(view)))
+            raise value_error("view", expected, repr(view))
         return VIEWS[view]
     return _check.vector("view", view, direction=True, n=n)
 

@@ -62,7 +62,7 @@ def surface(mesh: object, name: str) -> pv.PolyData:
     found = mesh if isinstance(mesh, pv.PolyData) else outer_surface(mesh)[0]
     if not has_faces(found):
         got = f"a {type(mesh).__name__} mesh without faces"
-        raise ValueError(_check.message(name, "a surface with faces", got))
+        raise _check.value_error(name, "a surface with faces", got)
     return found
 
 

@@ -10,8 +10,6 @@ import pyvista as pv
 
 from vizlight import _check
 
-__all__ = ["both_sides"]
-
 #: Distance between both sides as a share of the width of one.
 APART = 0.08
 #: Width over height from which the second side is below the first.
@@ -57,15 +55,13 @@ def both_sides(
     >>> render.both_sides(pv.Sphere(), (0, -1, 0), names=("front", "back")).keys()
     ['front', 'back']
     """
-    if not isinstance(surface, pv.PolyData):
-        raise TypeError(_check.message("surface", "a surface", _check.describe(surface)))
+    _check.instance("surface", surface, pv.PolyData, "a surface")
     carried = surface.point_data.active_normals
     if carried is not None and carried.shape[1:] != (3,):
-        got = _check.describe(carried)
-        raise ValueError(_check.message("surface", "normals of 3 components", got))
+        raise _check.value_error("surface", "normals of 3 components", _check.describe(carried))
     back, upward = _check.unit("toward", toward), _check.unit("up", up)
     if not isinstance(names, list | tuple) or len(names) != 2:
-        raise ValueError(_check.message("names", "two names", _check.describe(names)))
+        raise _check.value_error("names", "two names", _check.describe(names))
     words = [_check.text("names", name) for name in names]
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Integer points, vector")

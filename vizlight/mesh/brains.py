@@ -17,11 +17,6 @@ from vizlight._types import AnyArray, Foreign
 from vizlight.mesh import meaning, series
 from vizlight.mesh.georeference import UNIT
 
-__all__ = [
-    "SURFACES", "VOLUMES", "hemisphere", "is_freesurfer", "is_pair", "overlay", "read",
-    "tracks_of_tt", "volume", "word_and_unit",
-]  # fmt: skip
-
 #: Name of the array of a volume by the end of the name of its file, where that is not NIfTI.
 FORMATS = {".mnc": "MINC", ".mgz": "MGH", ".mgh": "MGH", ".head": "AFNI", ".brik": "AFNI"}
 #: Most by which the lengths of directions differ from 1, in the median.

@@ -123,13 +123,13 @@ class Work:
         for mesh_inputs in inputs:
             if mesh_inputs.points.shape[1] != 3:
                 got = f"points of {mesh_inputs.points.shape[1]} components"
-                raise ValueError(_check.message("bundle", "points in 3-space", got))
+                raise _check.value_error("bundle", "points in 3-space", got)
         # Among the lines that are lit a point must not be in the shade of its own line.
         self.of_meshes, self.bundle = bundle.lines is None, bundle
         self.lines = joined(meshes) if self.of_meshes else _lines_of(bundle.lines)
         if not len(self.lines.ids):
             remedy = "pass Bundle(lines=...) to dim another mesh by lines"
-            raise ValueError(_check.message("bundle", "a mesh with lines", "none", remedy))
+            raise _check.value_error("bundle", "a mesh with lines", "none", remedy)
         # Shares that a mesh has kept hold only for the same lines and the same options.
         options_text = repr([bundle.diameter, bundle.depth, bundle.grid, self.of_meshes])
         self.source = records.source(*self.lines, np.array([options_text]))
@@ -332,7 +332,7 @@ def _lines_of(mesh: object) -> LineSet:
     lines = joined(list(blocks.all_blocks(mesh)))
     if not len(lines.ids):
         expected, got = "a mesh of lines", type(mesh).__name__
-        raise ValueError(_check.message("Bundle(lines=)", expected, got))
+        raise _check.value_error("Bundle(lines=)", expected, got)
     return lines
 
 

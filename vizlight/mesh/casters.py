@@ -57,8 +57,7 @@ class CasterOptions(Options):
             occluders = [occluders]
         # Text and arrays can be iterated, too, but are no meshes.
         if isinstance(occluders, str | np.ndarray) or not isinstance(occluders, Iterable):
-            expected = "a closed surface or several"
-            raise TypeError(_check.message("occluders", expected, _check.describe(occluders)))
+            raise _check.type_error("occluders", "a closed surface or several", occluders)
         _check.set_fields(self, occluders=list(occluders))
         if self.thickness is not None:
             _check.positive("thickness", self.thickness)
@@ -82,7 +81,7 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions) -> FieldCaste
             if value:
                 got = len(value) if option == "occluders" else repr(value)
                 remedy = "leave it out, or pass the surface of the grid as a closed mesh"
-                raise ValueError(_check.message(option, "none on a height field", got, remedy))
+                raise _check.value_error(option, "none on a height field", got, remedy)
         return FieldCaster(mesh, options)
     if isinstance(mesh, pv.PolyData):
         defaults = {field.name: field.default for field in dataclasses.fields(options)}
@@ -90,7 +89,7 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions) -> FieldCaste
             setting, default = getattr(options, option), defaults[option]
             if setting is not default and (default is None or np.any(setting != default)):
                 remedy = "leave it out, or pass a grid"
-                raise ValueError(_check.message(option, "none on a surface", repr(setting), remedy))
+                raise _check.value_error(option, "none on a surface", repr(setting), remedy)
         return SolidCaster(mesh, scene, options)
     expected = "a height field (ImageData, RectilinearGrid, StructuredGrid) or a closed PolyData"
     remedy = "take the mesh's extract_surface()"
@@ -297,7 +296,7 @@ class SolidCaster:
         place /= max(self._unit, np.abs(place).max() / FAR)
         if any(closed_meshes.is_inside(body, place) for body in self._solids):
             expected, got = "a light outside the solid", light.position
-            raise ValueError(_check.message("position", expected, got, "move the light"))
+            raise _check.value_error("position", expected, got, "move the light")
         reach = np.linalg.norm(place - start, axis=1)
         return (place - start) / np.where(reach > 0, reach, 1)[:, np.newaxis], reach
 

@@ -35,8 +35,6 @@ from vizlight.mesh import (
 )
 from vizlight.mesh.meaning import Meaning
 
-__all__ = ["GRIB", "NETCDF", "SUFFIXES", "ZARR", "Steps", "add", "is_grid", "of_dataset", "read"]
-
 #: File name extensions of netCDF, of GRIB and of Zarr.
 NETCDF, GRIB, ZARR = (".nc", ".nc4", ".cdf"), (".grib", ".grib2", ".grb", ".grb2"), (".zarr",)
 SUFFIXES = (*NETCDF, *GRIB, *ZARR)

@@ -17,8 +17,6 @@ from vizlight.mesh import blocks, georeference, globes, meaning, projections
 from vizlight.mesh.georeference import PROJECTION
 from vizlight.mesh.projections import Projection
 
-__all__ = ["chart"]
-
 #: Degrees over which a projection is differentiated.
 STEP = 1e-4
 #: Distance beyond the outline of a map that counts as on it, as a share of the map's size.
@@ -75,12 +73,11 @@ def chart(mesh: pv.DataSet, /, projection: str | None = None) -> pv.DataSet:
     >>> str(europe.field_data["unit"][0])
     'metre'
     """
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     _check.coordinates("mesh", mesh.bounds)
     if not georeference.has_degrees(mesh):
         remedy = "pass it through vizlight.cartography.in_degrees"
-        raise ValueError(_check.message("mesh", "a map in degrees", "no such unit", remedy))
+        raise _check.value_error("mesh", "a map in degrees", "no such unit", remedy)
     if projection is not None:
         _check.text("projection", projection)
     text = suited(mesh) if projection is None else projection
@@ -88,14 +85,14 @@ def chart(mesh: pv.DataSet, /, projection: str | None = None) -> pv.DataSet:
     if plane is None:
         expected = "keywords of PROJ on a sphere, or a reference system and rasterio"
         remedy = "name one, or install vizlight[maps]"
-        raise ValueError(_check.message("projection", expected, repr(text), remedy))
+        raise _check.value_error("projection", expected, repr(text), remedy)
     words = projections.keywords(text)
     if words.get("proj") == "eqearth":
         mesh = globes.centred(mesh, float(words.get("lon_0", 0.0)))
     flat = _moved(mesh, plane, is_plane=words.get("proj") == "eqc")
     if not np.isfinite(flat.bounds).all():
         expected = f"places on the map of {text!r}"
-        raise ValueError(_check.message("mesh", expected, "some beyond it"))
+        raise _check.value_error("mesh", expected, "some beyond it")
     flat.field_data[georeference.UNIT] = ["metre"]
     flat.field_data[PROJECTION] = [text]
     return flat

@@ -119,7 +119,7 @@ def _merged(surface: object, name: str) -> tuple[Array, Indices, Indices, Indice
     corners = np.asarray(triangles(faces_only(surface)), dtype=np.intp)
     points = np.asarray(surface.points, dtype=np.float64)
     if not np.all(np.isfinite(points[corners])):
-        raise ValueError(_check.message(name, "faces with finite points", "NaN or infinite points"))
+        raise _check.value_error(name, "faces with finite points", "NaN or infinite points")
     # Zeros are added, because -0 is 0.
     first = coincident(points + 0.0)
     there = np.zeros(len(points), np.bool_)
@@ -150,7 +150,7 @@ def closed(surface: object, name: str = "mesh") -> tuple[Array, Indices]:
             "thickness= lights an open surface as a shell, raster= as a terrain"
         )
         got = f"one with {len(opened)} open edges"
-        raise ValueError(_check.message(name, "a closed surface", got, remedy))
+        raise _check.value_error(name, "a closed surface", got, remedy)
     # Each edge has its faces by pairs, but some faces are turned over: VTK turns all outward.
     oriented = blocks.polydata(vertices, triangles).compute_normals(
         cell_normals=False, split_vertices=False, auto_orient_normals=True
@@ -160,7 +160,7 @@ def closed(surface: object, name: str = "mesh") -> tuple[Array, Indices]:
     triangles = np.asarray(oriented.regular_faces, dtype=np.intp)
     if len(_open_edges(triangles, directed=True)):
         got = "one that cannot be oriented"
-        raise ValueError(_check.message(name, "a surface with an inside", got))
+        raise _check.value_error(name, "a surface with an inside", got)
     return vertices, triangles
 
 
@@ -182,7 +182,7 @@ def shell(surface: object, thickness: float, normals: Array) -> tuple[Array, Ind
     if len(_open_edges(faces, directed=True)):
         expected, got = "a surface of consistently oriented faces", "faces of both orientations"
         remedy = "call mesh.compute_normals(consistent_normals=True)"
-        raise ValueError(_check.message("mesh", expected, got, remedy))
+        raise _check.value_error("mesh", expected, got, remedy)
     return np.concatenate([vertices, under]), faces
 
 

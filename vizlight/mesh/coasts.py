@@ -14,8 +14,6 @@ from vizlight._types import Array, Bools, Indices
 from vizlight.mesh import charts, georeference, globes, polylines
 from vizlight.vtk.cells import connectivity
 
-__all__ = ["coasts"]
-
 #: Farthest ends of a map from 0, in degrees.
 FARTHEST = 720.0
 
@@ -103,10 +101,10 @@ def _sides(bounds: Sequence[float]) -> Array:
     sides = _check.coordinates("bounds", bounds)
     if sides.shape != (4,) or sides[0] > sides[1] or sides[2] > sides[3]:
         expected = "a mesh, or west, east, south and north in degrees that ascend"
-        raise ValueError(_check.message("bounds", expected, _check.describe(bounds)))
+        raise _check.value_error("bounds", expected, _check.describe(bounds))
     if np.abs(sides).max() > FARTHEST:
         expected = f"degrees, no farther than {FARTHEST:g} from 0"
-        raise ValueError(_check.message("bounds", expected, _check.describe(bounds)))
+        raise _check.value_error("bounds", expected, _check.describe(bounds))
     return sides
 
 

@@ -12,8 +12,6 @@ from vizlight.vtk.corners import SHARP, sharp_edges
 from vizlight.vtk.memory import once
 from vizlight.vtk.normals import creases as share_of_creases
 
-__all__ = ["borders", "creases"]
-
 #: Size of connected edges, as a share of that of the surface, below which they are roughness.
 SHORT = 0.1
 #: The same of borders, below which they are cracks.
@@ -111,8 +109,7 @@ def borders(surface: pv.PolyData, /) -> pv.PolyData:
 
 def _check_surface(surface: object) -> None:
     """Raise TypeError or ValueError unless a value is a surface without damaged cells."""
-    if not isinstance(surface, pv.PolyData):
-        raise TypeError(_check.message("surface", "a pyvista.PolyData", _check.describe(surface)))
+    _check.instance("surface", surface, pv.PolyData, "a pyvista.PolyData")
     check_whole(surface, "surface")
 
 

@@ -10,8 +10,6 @@ from datetime import timedelta
 
 import numpy as np
 
-__all__ = ["date", "round_dates", "seconds"]
-
 #: Days of a year, the mean of 400 years.
 _YEAR = 365.2425
 #: Seconds of the units of times, by patterns of their names.

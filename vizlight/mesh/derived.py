@@ -17,8 +17,6 @@ from vizlight.vtk.arrays import of_components
 from vizlight.vtk.cells import check_whole, connectivity
 from vizlight.vtk.polylines import has_lines_only
 
-__all__ = ["layer_of", "layers", "stretched", "surface_of", "warped", "with_vectors"]
-
 #: Share of the area of its voxels' faces below which the surface of a label is too thin to be
 #: smoothed: that of a ball is 0.6, of a bar two voxels wide 0.23.
 THIN = 0.25
@@ -82,14 +80,13 @@ def surface_of(
     values = _scalars(mesh, "contour", contour)
     finite = values[np.isfinite(values)]
     if not finite.size:
-        raise ValueError(_check.message("contour", "an array with finite values", repr(contour)))
+        raise _check.value_error("contour", "an array with finite values", repr(contour))
     low, high = float(finite.min()), float(finite.max())
     levels = np.ravel((low + high) / 2 if level is None else level).tolist()
     surface = blocks.isosurface(mesh, contour, *(_check.number("level", each) for each in levels))
     if not surface.n_points:
         expected = f"a value between {low:g} and {high:g}"
-        got = ", ".join(f"{each:g}" for each in levels)
-        raise ValueError(_check.message("level", expected, got))
+        raise _check.value_error("level", expected, ", ".join(f"{each:g}" for each in levels))
     # Beside a hole VTK makes faces with corners that are nowhere.
     there: Foreign = np.isfinite(np.asarray(surface.points)).all(axis=1)
     return surface if there.all() else _kept_points(surface, there)
@@ -109,7 +106,7 @@ def _of_labels(mesh: pv.DataSet | pv.MultiBlock, name: str) -> pv.PolyData:
     values = _scalars(mesh, "labels", name)
     if values.dtype.kind not in "iu" or not values.any():
         got = f"{name!r} of {values.dtype}"
-        raise ValueError(_check.message("labels", "whole numbers that are not all 0", got))
+        raise _check.value_error("labels", "whole numbers that are not all 0", got)
     taken: Keywords = {"scalars": name, "output_mesh_type": "triangles"}
     boundary: pv.PolyData = mesh.contour_labels(**taken)
     rows = np.asarray(boundary.cell_data["boundary_labels"])
@@ -215,7 +212,7 @@ def warped(mesh: pv.DataSet, name: str, factor: float, /) -> pv.DataSet:
     # Over degrees, each some 111 km, heights in metres would stand as needles.
     mesh = georeference.in_metres(mesh)
     if holes.all():
-        raise ValueError(_check.message("warp", "an array with finite values", repr(name)))
+        raise _check.value_error("warp", "an array with finite values", repr(name))
     is_grid = isinstance(mesh, pv.ImageData | pv.RectilinearGrid)
     if is_grid or rows.shape[1] == 3:
         # VTK raises grids to float32, which is coarse far from the origin.
@@ -283,8 +280,7 @@ def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.Structured
         at = _check.integer("at", at, low=0, high=len(levels) - 1)
         return _faces_at(mesh, levels, at)
     if not isinstance(mesh, pv.RectilinearGrid | pv.StructuredGrid):
-        got = type(mesh).__name__
-        raise TypeError(_check.message("mesh", "an image or a grid", got))
+        raise TypeError(_check.message("mesh", "an image or a grid", type(mesh).__name__))
     nx, ny, nz = mesh.dimensions
     at = _check.integer("at", at, low=0, high=nz - 1)
     layer: pv.RectilinearGrid | pv.StructuredGrid
@@ -367,8 +363,7 @@ def _scalars(mesh: pv.DataSet, argument: str, name: str) -> Raw:
     got = repr(name)
     if name in data:
         got = f"{name!r} of {_check.describe(data[name])}"
-    expected = f"an array of one component, {_check.one_of(names)}"
-    raise ValueError(_check.message(argument, expected, got))
+    raise _check.value_error(argument, f"an array of one component, {_check.one_of(names)}", got)
 
 
 def _are_numbers(values: Raw) -> bool:

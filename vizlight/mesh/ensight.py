@@ -19,8 +19,6 @@ from numpy.typing import NDArray
 from vizlight._types import Indices, Raw
 from vizlight.mesh import file_parts
 
-__all__ = ["missing_part", "size"]
-
 #: Words of a case that stand alone in a line.
 _SECTIONS = (
     b"FORMAT", b"GEOMETRY", b"VARIABLE", b"TIME", b"FILE", b"MATERIAL", b"BLOCK_CONTINUATION",

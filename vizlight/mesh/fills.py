@@ -157,8 +157,7 @@ def without_fills(mesh: DataSetT, nodata: float | None = None, /) -> DataSetT:
         Copy that shares the other arrays, with notes of the value and its share; the mesh itself
         where nothing is missing.
     """
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     nodata = checked(nodata)
     known, notes = mesh, list[str]()
     for of_cells, data in enumerate((mesh.point_data, mesh.cell_data)):
@@ -210,9 +209,7 @@ def without_air(volume: pv.ImageData, name: str, /) -> pv.ImageData:
     >>> int(np.isnan(files.without_air(scan, "T1")["T1"]).sum())
     636
     """
-    mesh: object = volume
-    if not isinstance(mesh, pv.ImageData):
-        raise TypeError(_check.message("volume", "a pyvista.ImageData", _check.describe(mesh)))
+    _check.instance("volume", volume, pv.ImageData, "a pyvista.ImageData")
     name = _check.text("name", name, expected="the name of a point array")
     rows = np.asarray(_check.floats("name", records.scalars_of(volume, "name", name)))
     values = rows.reshape(volume.dimensions, order="F")

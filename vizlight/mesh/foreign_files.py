@@ -470,8 +470,7 @@ def _tracts(path: Path) -> pv.PolyData:
         # The header as it is in the file; nibabel takes a cut between two streamlines for the end.
         header = nibabel.streamlines.load(path, lazy_load=True).header
         if len(lines) < header["nb_streamlines"]:
-            reason = f"{len(lines)} of {header['nb_streamlines']} streamlines are there"
-            raise ValueError(reason)
+            raise ValueError(f"{len(lines)} of {header['nb_streamlines']} streamlines are there")
         # A number of 4 bytes for each line, place, scalar of a point and property of a line.
         of_point = 3 + int(header["nb_scalars_per_point"])
         of_line = 1 + int(header["nb_properties_per_streamline"])

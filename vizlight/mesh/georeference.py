@@ -16,13 +16,6 @@ from vizlight._types import Array, Foreign, Raw, Slice
 from vizlight.mesh import blocks, composites, fills, meaning, sections
 from vizlight.mesh.blocks import DataSetT
 
-__all__ = [
-    "DEGREE", "PROJECTION", "SUFFIXES", "UNIT", "exaggeration", "has_degrees", "in_degrees",
-    "in_metres", "is_earth", "is_map", "motion", "on_earth", "place_alike", "rates", "read",
-    "scale_to_one", "seem_degrees", "stretch", "unit_of",
-]  # fmt: skip
-
-
 #: Field array with the unit of x and y, and its value for longitude and latitude.
 UNIT, DEGREE = "unit", "degree"
 #: Field array with the text of a projection: of a map in degrees that in which its grid is
@@ -259,12 +252,11 @@ def in_degrees(mesh: DataSetT, /) -> DataSetT:
     >>> str(earth.field_data["unit"][0])
     'degree'
     """
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     _, _, south, north, _, _ = _check.coordinates("mesh", mesh.bounds)
     if mesh.n_points and not -90 <= south <= north <= 90:
         expected = "a mesh whose y is a latitude, from -90 to 90"
-        raise ValueError(_check.message("mesh", expected, f"y from {south:g} to {north:g}"))
+        raise _check.value_error("mesh", expected, f"y from {south:g} to {north:g}")
     named = mesh.copy(deep=False)
     named.field_data[UNIT] = [DEGREE]
     return named

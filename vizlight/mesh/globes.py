@@ -13,8 +13,6 @@ from vizlight._types import Array, Indices
 from vizlight.mesh import georeference, meaning, polylines, projections, records
 from vizlight.vtk.cells import connectivity, dimensions
 
-__all__ = ["globe"]
-
 #: Field array that says that a mesh is the earth as a ball around 0, with its radius.
 GLOBE = "globe"
 #: Degrees of a side of a line at most.
@@ -63,17 +61,16 @@ def globe(
     >>> cartography.globe(earth).n_open_edges
     0
     """
-    if not isinstance(mesh, pv.DataSet):
-        raise TypeError(_check.message("mesh", "a mesh", _check.describe(mesh)))
+    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
     if not georeference.has_degrees(mesh):
         remedy = "pass it through vizlight.cartography.in_degrees"
-        raise ValueError(_check.message("mesh", "a map in degrees", "no such unit", remedy))
+        raise _check.value_error("mesh", "a map in degrees", "no such unit", remedy)
     _check.coordinates("mesh", mesh.bounds)
     if not np.isfinite(np.asarray(mesh.points)).all():
-        raise ValueError(_check.message("mesh", "points that are finite", "NaN"))
+        raise _check.value_error("mesh", "points that are finite", "NaN")
     if mesh.bounds_size[2] > 0:
         expected, got = "a flat map", f"one of {mesh.bounds_size[2]:g} along z"
-        raise ValueError(_check.message("mesh", expected, got))
+        raise _check.value_error("mesh", expected, got)
     lines = mesh if isinstance(mesh, pv.PolyData) and mesh.n_lines else None
     flat = _surface(closed(mesh)) if lines is None else divided(lines)
     for names in meaning.components(flat):
@@ -268,8 +265,7 @@ def centred(mesh: pv.DataSet, middle: float) -> pv.DataSet:
 def _surface(mesh: pv.DataSet) -> pv.PolyData:
     """Return the faces of a flat mesh, with its arrays and no more."""
     options = {"pass_pointid": False, "pass_cellid": False}
-    surface: pv.PolyData = mesh.extract_surface(algorithm="dataset_surface", **options)
-    return surface
+    return mesh.extract_surface(algorithm="dataset_surface", **options)
 
 
 def _whole(ball: pv.PolyData) -> pv.PolyData:

@@ -13,8 +13,6 @@ from urllib.parse import unquote
 from vizlight._types import Foreign, Keywords
 from vizlight.mesh import file_parts
 
-__all__ = ["missing_part"]
-
 #: Numbers in an element of glTF, and bytes of a number.
 _ELEMENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 _COMPONENTS = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}

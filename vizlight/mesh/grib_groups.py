@@ -14,8 +14,6 @@ from pathlib import Path
 
 from vizlight._types import Foreign, Keywords
 
-__all__ = ["missing_messages", "opened"]
-
 
 @functools.cache
 def _folder() -> str:

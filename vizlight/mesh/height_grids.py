@@ -124,7 +124,7 @@ def heights_of(
     if raster is not None:
         return _sampled(grid, elevation, factor, _check.number("raster", raster, low=0.0))
     if isinstance(grid, pv.PolyData):
-        raise ValueError(_check.message("raster", "the spacing of the nodes", None))
+        raise _check.value_error("raster", "the spacing of the nodes", None)
     nodes, rounding = _nodes(grid)
     z = _elevation(grid, elevation, nodes[..., 2])
     place = np.arange(z.size).reshape(z.shape)
@@ -171,7 +171,7 @@ def _sampled(
     finite = np.all(np.isfinite(points), axis=1)
     triangles = triangles[np.all(finite[triangles], axis=1)]
     if not len(triangles) or triangles.shape[1] < 3:
-        raise ValueError(_check.message("mesh", "faces with heights", "none"))
+        raise _check.value_error("mesh", "faces with heights", "none")
     # Points of no face would make the raster larger.
     used = points[np.unique(triangles)]
     low, sides = used.min(axis=0)[:2], np.ptp(used, axis=0)[:2]
@@ -179,18 +179,18 @@ def _sampled(
     step = spacing or float(np.sqrt(sides[0] * sides[1] / len(used)))
     if not (step > 0 and step <= sides.min()):
         expected = f"a spacing up to {sides.min():g}, the shorter side of the mesh"
-        raise ValueError(_check.message("raster", expected, step))
+        raise _check.value_error("raster", expected, step)
     with np.errstate(over="ignore"):
         # A tiny spacing gives an infinite number, which is no integer and no help in a message.
         count = np.minimum(np.round(sides / step) + 1, 2 * LARGEST)
     if count[0] * count[1] > LARGEST:
         got = f"{count[0]:g} x {count[1]:g} nodes"
-        raise ValueError(_check.message("raster", f"a raster of at most {LARGEST} nodes", got))
+        raise _check.value_error("raster", f"a raster of at most {LARGEST} nodes", got)
     x, y = (np.linspace(low[a], low[a] + sides[a], int(count[a])) for a in (0, 1))
     # Seen from above: of several layers, as at a bridge, the highest counts.
     heights = depth_map(x, y, points, triangles)
     if np.isnan(heights).all():
-        raise ValueError(_check.message("raster", "nodes that the mesh covers", "none"))
+        raise _check.value_error("raster", "nodes that the mesh covers", "none")
     place = np.arange(heights.size).reshape(heights.shape)
     # Points at the outline interpolate nodes beyond it, which so have the height of the nearest.
     filled, stretch = height_field.filled(heights), _stretch(mesh, y)
@@ -203,14 +203,14 @@ def _check_layer(grid: Grid) -> tuple[int, int]:
     if nz != 1:
         got = f"{nx} x {ny} x {nz}"
         remedy = "pass one layer of it, or its closed surface, mesh.extract_surface()"
-        raise ValueError(_check.message("mesh", "a grid of one layer, nx x ny x 1", got, remedy))
+        raise _check.value_error("mesh", "a grid of one layer, nx x ny x 1", got, remedy)
     return nx, ny
 
 
 def _nodes(grid: Grid) -> tuple[Array, float]:
     """Return the points of a level grid, shape (ny, nx, 3), and the rounding of their x and y."""
     if grid.n_points == 0:
-        raise ValueError(_check.message("mesh", "a grid of points", "an empty one"))
+        raise _check.value_error("mesh", "a grid of points", "an empty one")
     nx, ny = _check_layer(grid)
     if isinstance(grid, pv.StructuredGrid):
         points: Array = np.asarray(grid.points)
@@ -236,7 +236,7 @@ def _check_square(x: Array, y: Array, rounding: float) -> None:
     # In this form NaN fails, too.
     if not max(np.ptp(x, axis=0).max(), np.ptp(y, axis=1).max()) <= 8 * rounding:
         expected = "rows and columns that are straight and at right angles"
-        raise ValueError(_check.message("mesh", expected, "other rows and columns", REMEDY))
+        raise _check.value_error("mesh", expected, "other rows and columns", REMEDY)
 
 
 def _tilted() -> ValueError:

@@ -20,8 +20,6 @@ from vizlight._types import Indices
 from vizlight.mesh import file_parts, series
 from vizlight.vtk.cells import cell_arrays, connectivity, points_of_type
 
-__all__ = ["missing_numbers", "missing_part"]
-
 #: Bytes in which the lines before the data stand.
 _HEAD = 4096
 #: Version in the first line, and words before cells that are rows until version 5.

@@ -13,11 +13,6 @@ import scipy
 from vizlight._types import Array, Bools, Foreign, Indices, Raw
 from vizlight.mesh import globes, unrolled
 
-__all__ = [
-    "Around", "Listed", "around_earth", "cells", "joined", "listed", "points", "seem_radians",
-    "with_turned_rows",
-]  # fmt: skip
-
 #: Dimensions of cells of several faces, and of their corners.
 CELLS = ("cell", "corner")
 #: Least and largest number of points that are joined, degrees of latitude that they must span, and

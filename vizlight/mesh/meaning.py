@@ -20,12 +20,6 @@ from vizlight.mesh import dates, records
 from vizlight.mesh.blocks import DataSetT
 from vizlight.vtk.arrays import stacked
 
-__all__ = [
-    "ANATOMY", "MEANING", "AxisScale", "Meaning", "along_grid", "attach", "components",
-    "is_photograph", "line", "metres", "of", "only_vectors", "speed", "usual_unit", "vectors",
-    "ways", "with_named",
-]  # fmt: skip
-
 #: Most distinct values of an array of kinds, such as materials or labels.
 MOST_KINDS = 12
 #: Name of vectors, names of components, or the two names of a cross field.
@@ -470,7 +464,7 @@ def only_vectors(mesh: pv.DataSet) -> str | None:
     names = [*(",".join(group) for group in components(mesh)), *_planar(mesh)]
     if len(names) > 1:
         expected = f"the name of an array, or names of components ({' or '.join(names)})"
-        raise ValueError(_check.message("tangents", expected, None))
+        raise _check.value_error("tangents", expected, None)
     return names[0] if names else None
 
 
@@ -532,12 +526,12 @@ def with_named(mesh: DataSetT, named: Named | None) -> tuple[DataSetT, Named | N
     there = {name: np.ndim(mesh[name]) for name in group if name in mesh.array_names}
     if len(group) == 2 and set(there.values()) == {2}:
         expected, remedy = "True for two arrays, a cross field", "pass line_field=True"
-        raise ValueError(_check.message("line_field", expected, False, remedy))
+        raise _check.value_error("line_field", expected, False, remedy)
     if len(there) != len(group) or len(group) not in (2, 3) or set(there.values()) != {1}:
         expected = "the names of two or three arrays of one component"
         known = [",".join(one) for one in components(mesh)]
         remedy = f"there are {' and '.join(known)}" if known else ""
-        raise ValueError(_check.message("tangents", expected, repr(named), remedy))
+        raise _check.value_error("tangents", expected, repr(named), remedy)
     # Arrays of cells are averaged to the points.
     mesh = records.averaged(mesh, *group).copy(deep=False)
     mesh.point_data[named] = vectors(mesh, group)

@@ -284,14 +284,13 @@ def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
     strands by places; Carson and Bugg, Journal of Molecular Graphics 4 (1986), for the turn of
     ribbons by the oxygens of peptides.
     """
-    if not isinstance(atoms, pv.PolyData):
-        raise TypeError(_check.message("atoms", "a pyvista.PolyData", _check.describe(atoms)))
+    _check.instance("atoms", atoms, pv.PolyData, "a pyvista.PolyData")
     needed = "chain", "atom_type"
     for name in (BACKBONE, *needed):
         rows = atoms.point_data.get(name)
         if rows is None or rows.ndim != 1:
             expected = f"a molecule of a PDB or CIF file, with the point array {name!r}"
-            raise ValueError(_check.message("atoms", expected, f"arrays {atoms.point_data.keys()}"))
+            raise _check.value_error("atoms", expected, f"arrays {atoms.point_data.keys()}")
     marks = np.asarray(atoms.point_data[BACKBONE])
     marked = np.flatnonzero(marks == 1)
     places = np.asarray(atoms.points, dtype=np.float64)
@@ -354,11 +353,10 @@ def atoms_in(volume: pv.DataSet, /) -> pv.PolyData:
     """
     from vtkmodules.vtkDomainsChemistry import vtkPeriodicTable
 
-    if not isinstance(volume, pv.DataSet):
-        raise TypeError(_check.message("volume", "a pyvista.DataSet", _check.describe(volume)))
+    _check.instance("volume", volume, pv.DataSet, "a pyvista.DataSet")
     if not {NUMBERS, PLACES} <= {*volume.field_data.keys()}:
         expected = f"the volume of a cube file, with field arrays {NUMBERS!r} and {PLACES!r}"
-        raise ValueError(_check.message("volume", expected, f"{volume.field_data.keys()}"))
+        raise _check.value_error("volume", expected, f"{volume.field_data.keys()}")
     table = vtkPeriodicTable()
     numbers = np.ravel(volume.field_data[NUMBERS]).tolist()
     places = np.reshape(volume.field_data[PLACES], (-1, 3))

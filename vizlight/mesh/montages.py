@@ -12,8 +12,6 @@ from vizlight._types import Array
 from vizlight.mesh import meaning
 from vizlight.vtk.cells import dimensions
 
-__all__ = ["is_stack", "side_by_side"]
-
 #: Most slices of a stack, fewest pixels along its slices as a multiple of their number, and least
 #: distance of slices in that of their pixels.
 MOST, PIXELS, APART = 24, 4, 1.5
@@ -59,14 +57,13 @@ def side_by_side(volume: pv.DataSet, name: str, /) -> pv.ImageData:
     TypeError, ValueError
         If it is no such volume, or has no such array.
     """
-    if not isinstance(volume, pv.ImageData | pv.StructuredGrid):
-        raise TypeError(_check.message("volume", "an image or a grid", _check.describe(volume)))
+    _check.instance("volume", volume, pv.ImageData | pv.StructuredGrid, "an image or a grid")
     _check.text("name", name, expected="the name of a point array")
     if name not in volume.point_data or volume.point_data[name].ndim != 1:
         expected = (
             f"the name of a point array of one component, {_check.one_of(volume.point_data.keys())}"
         )
-        raise ValueError(_check.message("name", expected, repr(name)))
+        raise _check.value_error("name", expected, repr(name))
     steps, across = _steps(volume), int(np.argmin(dimensions(volume)))
     first, second = (axis for axis in range(3) if axis != across)
     # The axis that rises most is up, and points away from the eye where none does.

@@ -20,6 +20,7 @@ from vizlight.model import kernels
 from vizlight.scene import Scene, View
 from vizlight.shading.inputs import ArraySource
 from vizlight.shading.options import FeatureAngle, LightOptions
+from vizlight.vtk import normals as vtk_normals
 from vizlight.vtk.batches import SMALL, batches
 from vizlight.vtk.cells import (
     cell_arrays,
@@ -34,15 +35,6 @@ from vizlight.vtk.cells import (
     triangles,
 )
 from vizlight.vtk.corners import MANY_SHARP, SHARP, numbered, split_faces
-from vizlight.vtk.normals import (
-    Sided,
-    computed_normals,
-    creases,
-    given_normals,
-    known_normals,
-    remember,
-    sided_normals,
-)
 from vizlight.vtk.parts import Part
 from vizlight.vtk.topology import coincident
 
@@ -84,9 +76,9 @@ def compute_ahead(meshes: Iterable[pv.DataSet]) -> None:
     for batch in batches(surfaces, (), (KEPT,)):
         if not has_faces(surfaces[batch.numbers[0]]):
             continue
-        sided = computed_normals(batch.mesh, block=batch.block, owner=batch.owner)
+        sided = vtk_normals.computed_normals(batch.mesh, block=batch.block, owner=batch.owner)
         for i, number in enumerate(batch.numbers):
-            remember(surfaces[number], sided.of_block(i, slice(*batch.ends[i : i + 2])))
+            vtk_normals.remember(surfaces[number], sided.of_block(i, slice(*batch.ends[i : i + 2])))
 
 
 def normals_of(
@@ -98,16 +90,16 @@ def normals_of(
     eye and away from the centroid. With ``warn`` a warning is given if they were averaged across
     many sharp edges.
     """
-    given = given_normals(mesh, value, n)
+    given = vtk_normals.given_normals(mesh, value, n)
     if given is not None:
         return given
     # Those of a surface without a view are kept, and closed pieces have the same ones.
     surface = mesh if isinstance(mesh, pv.PolyData) else None
-    sided = None if surface is None or view is None else known_normals(surface)
+    sided = None if surface is None or view is None else vtk_normals.known_normals(surface)
     if sided is None or (view is not None and sided.any_open):
-        sided = computed_normals(mesh, view=view, sides=warn or surface is not None)
+        sided = vtk_normals.computed_normals(mesh, view=view, sides=warn or surface is not None)
         if surface is not None and not sided.any_open:
-            remember(surface, sided)
+            vtk_normals.remember(surface, sided)
     if warn:
         warn_of_edges(float(sided.sharp), surface is not None)
     return sided.vectors
@@ -165,7 +157,7 @@ def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object, angle: Fe
     for mesh in meshes[:MOST_MESHES]:
         if not isinstance(mesh, pv.PolyData) or not has_faces(mesh):
             continue
-        rows = given_normals(mesh, value, 3)
+        rows = vtk_normals.given_normals(mesh, value, 3)
         if rows is None:
             continue
         share, leaning = _lean_shares(mesh, rows)
@@ -180,7 +172,7 @@ def warn_of_contradiction(meshes: Sequence[pv.DataSet], value: object, angle: Fe
         # of points that are rounded are none of theirs.
         split = isinstance(angle, float | int)
         if leaning > MANY_SHARP and not split and rounding(places(mesh)) <= ROUNDED:
-            sharp = max(sharp, creases(mesh, has_normals=True))
+            sharp = max(sharp, vtk_normals.creases(mesh, has_normals=True))
     # A coarse mesh of a smooth shape has sharp edges too, but fewer.
     if sharp > SMEARED:
         _check.warn(
@@ -259,7 +251,7 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
     if angle == "auto":
         # The share is 0 on a coarse mesh of a smooth shape, too, whose edges are no creases.
         known = kept(mesh)
-        if not (creases(mesh) if known is None else known.sharp):
+        if not (vtk_normals.creases(mesh) if known is None else known.sharp):
             return mesh
         angle = SHARP
     # Not kept, as normals are: corners take more memory than a filter may.
@@ -269,7 +261,7 @@ def split_edges(mesh: pv.PolyData, angle: float | Literal["auto"]) -> pv.PolyDat
 
 def split_or_normals(
     mesh: pv.PolyData, angle: float | Literal["auto"]
-) -> tuple[pv.PolyData, Sided | None]:
+) -> tuple[pv.PolyData, vtk_normals.Sided | None]:
     """Return the mesh of :func:`split_edges` and its normals, None where they are found later."""
     split = split_edges(mesh, angle)
     if not has_faces(mesh) or not mesh.n_points:
@@ -277,7 +269,7 @@ def split_or_normals(
     # Normals of small surfaces are found together.
     if split is mesh and mesh.n_points <= SMALL:
         return mesh, None
-    return split, kept(split) or computed_normals(split, owner=mesh)
+    return split, kept(split) or vtk_normals.computed_normals(split, owner=mesh)
 
 
 def _split(mesh: pv.PolyData, angle: float) -> tuple[Indices, Indices, Indices] | None:
@@ -382,13 +374,15 @@ def _rows(mesh: pv.PolyData) -> Indices:
     return np.concatenate([np.arange(mesh.n_cells - len(size)), rows])
 
 
-def _stay(mesh: pv.DataSet, normals: Sided) -> bool:
+def _stay(mesh: pv.DataSet, normals: vtk_normals.Sided) -> bool:
     """Return whether normals are kept with a mesh of this kind and size."""
     made = normals.computed and not normals.kept and normals.lean is not None
     return made and n_points(mesh) >= FEWEST and isinstance(mesh, _KINDS)
 
 
-def to_keep(meshes: Sequence[pv.DataSet], part: Part) -> Iterator[tuple[int, Sided | None]]:
+def to_keep(
+    meshes: Sequence[pv.DataSet], part: Part
+) -> Iterator[tuple[int, vtk_normals.Sided | None]]:
     """Yield the number and the normals of each mesh of a part.
 
     Without the rows of points where these do not stay with a mesh; ``sharp`` is then the largest.
@@ -406,7 +400,7 @@ def to_keep(meshes: Sequence[pv.DataSet], part: Part) -> Iterator[tuple[int, Sid
             yield number, normals
 
 
-def keep(mesh: pv.DataSet, normals: Sided) -> None:
+def keep(mesh: pv.DataSet, normals: vtk_normals.Sided) -> None:
     """Attach normals that were computed to a mesh, unless it is small; see :func:`records.keep`."""
     if not len(normals.vectors) or not _stay(mesh, normals):
         return
@@ -416,13 +410,13 @@ def keep(mesh: pv.DataSet, normals: Sided) -> None:
     records.keep(mesh, KEPT, "normals", rows, sharp=normals.sharp, inside=normals.inside)
 
 
-def kept(mesh: pv.DataSet) -> Sided | None:
+def kept(mesh: pv.DataSet) -> vtk_normals.Sided | None:
     """Return the normals that an earlier result kept, if the mesh has not changed since."""
     found = records.kept(mesh, KEPT, 5)
     if found is None:
         return None
     rows, record = found
-    return Sided(
+    return vtk_normals.Sided(
         np.ascontiguousarray(rows[:, :3], dtype=np.float32),
         rows[:, 3],
         rows[:, 4].astype(np.intp),
@@ -456,11 +450,11 @@ def with_normals(surface: object, view: View | None, angle: FeatureAngle = None)
     for key, array in own.point_data.items():
         if np.asarray(array).dtype.kind in "biuf":
             triangles.point_data[key] = np.asarray(array)
-    if given_normals(own, None, 3) is None:
+    if vtk_normals.given_normals(own, None, 3) is None:
         found = normals_of(own, None, 3, view, warn=angle is None)
     else:
         # Closed surfaces have an outer side, whatever their normals say.
-        found = sided_normals(own, None, 3, "auto").vectors
+        found = vtk_normals.sided_normals(own, None, 3, "auto").vectors
     kind = np.result_type(found.dtype, np.float32)
     triangles.point_data[NORMALS] = kernels.unit_rows(found).astype(kind, copy=False)
     return triangles if triangles.is_all_triangles else triangles.triangulate()
@@ -545,6 +539,6 @@ def keep_normals(mesh: pv.PolyData) -> None:
     whole.SetPoints(mesh.GetPoints())
     # By place alone: a seam of texture or colour is no edge of this surface.
     whole.SetPolys(blocks.cell_array(first[ids], ends))
-    sided = computed_normals(whole)
+    sided = vtk_normals.computed_normals(whole)
     if not sided.sharp:
         keep(mesh, sided.at(first))

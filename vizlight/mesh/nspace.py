@@ -100,14 +100,14 @@ class Turning:
                 "vizlight.manifold makes a mesh of a manifold in n-space; of your own, attach the "
                 "places as a point array of n components and pass positions="
             )
-            raise ValueError(_check.message("positions", "places in n-space", got, remedy))
+            raise _check.value_error("positions", "places in n-space", got, remedy)
         position = _named(mesh, "positions", self.positions)
         n = position.shape[1]
         # A rotation needs a plane, and so two axes.
         if n < 2:
             got = f"{self.positions!r} with {n}"
             remedy = "name an array of positions in n-space"
-            raise ValueError(_check.message("positions", "2 components or more", got, remedy))
+            raise _check.value_error("positions", "2 components or more", got, remedy)
         arrays = {self.positions: position}
         has_cells = mesh.GetMaxSpatialDimension() > 0
         if has_cells and self.frame == FRAME and FRAME not in mesh.point_data:
@@ -123,7 +123,7 @@ class Turning:
                 expected = f"a point array of {n} k components, as positions have {n}"
                 got = f"{name!r} with {array.shape[1]} components"
                 remedy = "name another array"
-                raise ValueError(_check.message(argument, expected, got, remedy))
+                raise _check.value_error(argument, expected, got, remedy)
             arrays[name] = array
         # Positions have no array of images: these are the points of the result.
         _refuse_overwriting(mesh, [PROJECTED + name for name in list(arrays)[1:]])
@@ -171,7 +171,7 @@ class Turning:
             remedy = "drop them by cut=True"
             if self.distance is not None:
                 remedy = "move the eye away by distance=, or " + remedy
-            raise ValueError(_check.message("mesh", expected, got, remedy))
+            raise _check.value_error("mesh", expected, got, remedy)
         lost.add(count)
 
     def projected(self, mesh: pv.DataSet, done: Counter, lost: Counter) -> pv.DataSet:
@@ -240,12 +240,11 @@ class Turning:
 
         def work(x: Array, p: Array) -> Array:
             x = x.reshape(-1, rows, n)
-            images: Array = (
+            return (
                 projection.push_frame(x, p, distance=self.distance, rtol=rtol)[0]
                 if space
                 else projection.push_forward(x, p, distance=self.distance)
             )
-            return images
 
         return _blocks(work, vectors, rows, 3, position)
 
@@ -372,7 +371,7 @@ def _refuse_overwriting(mesh: pv.DataSet, names: list[str]) -> None:
     for name in names:
         if name in mesh.point_data and name not in ours:
             expected = "a mesh without an array under the name of a result"
-            raise ValueError(_check.message("mesh", expected, repr(name), "rename that array"))
+            raise _check.value_error("mesh", expected, repr(name), "rename that array")
 
 
 def _without(mesh: pv.DataSet, lost: Bools) -> pv.DataSet:
@@ -395,11 +394,10 @@ def _plane(hyperplane: object, n: int) -> tuple[Array, float]:
     """Return the unit normal of a hyperplane and its offset."""
     expected = f"(normal of {n} components, offset)"
     if not isinstance(hyperplane, tuple | list) or len(hyperplane) != 2:
-        raise TypeError(_check.message("hyperplane", expected, _check.describe(hyperplane)))
+        raise _check.type_error("hyperplane", expected, hyperplane)
     normal = np.array(_check.vector("hyperplane", hyperplane[0], direction=True))
     if len(normal) != n:
-        got = f"a normal of {len(normal)} components"
-        raise ValueError(_check.message("hyperplane", expected, got))
+        raise _check.value_error("hyperplane", expected, f"a normal of {len(normal)} components")
     # By the largest component first, so that no square overflows.
     normal /= np.abs(normal).max()
     return normal / np.linalg.norm(normal), _check.number("hyperplane", hyperplane[1])
@@ -525,7 +523,7 @@ def _simplices(mesh: pv.DataSet) -> tuple[Indices, Indices]:
                 return kinds[kind], none
     expected, got = "lines, faces or volumes", "a mesh of points alone"
     remedy = "connect the points, for example by delaunay_3d()"
-    raise ValueError(_check.message("mesh", expected, got, remedy))
+    raise _check.value_error("mesh", expected, got, remedy)
 
 
 def _cells(grid: pv.UnstructuredGrid) -> dict[int, Indices]:

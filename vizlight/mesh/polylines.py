@@ -50,7 +50,7 @@ def direction_colors(mesh: pv.DataSet, /) -> Array:
         raise TypeError(_check.message("mesh", "a PyVista mesh of lines", type(mesh).__name__))
     if not has_lines_only(mesh):
         remedy = "take its streamlines, or its edges by extract_all_edges()"
-        raise ValueError(_check.message("mesh", "a mesh of lines", type(mesh).__name__, remedy))
+        raise _check.value_error("mesh", "a mesh of lines", type(mesh).__name__, remedy)
     return np.abs(line_tangents(mesh))
 
 

@@ -14,8 +14,6 @@ import numpy as np
 
 from vizlight._types import Array, Foreign
 
-__all__ = ["Projection", "around", "of_attributes", "of_text", "suited"]
-
 #: Radius of the earth, in metres.
 RADIUS = 6_371_008.8
 #: Keywords of PROJ for the projections of CF, and for their attributes.

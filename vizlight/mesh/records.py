@@ -218,7 +218,7 @@ def refuse_overwriting(
                 edited = array in (read(mesh, name) or {}).get("arrays", {})
                 got = repr(array) + ", changed since it was computed" * edited
                 remedy = "pass another name=, rename that array or delete it"
-                raise ValueError(_check.message("name", expected, got, remedy))
+                raise _check.value_error("name", expected, got, remedy)
 
 
 def amend(mesh: pv.DataSet, name: str, filter_name: str, *options: object) -> None:
@@ -259,8 +259,7 @@ def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> 
     """
     if not isinstance(mesh, pv.DataSet | pv.MultiBlock):
         raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
-    if not isinstance(name, str):
-        raise TypeError(_check.message("name", "the name of an array", _check.describe(name)))
+    _check.instance("name", name, str, "the name of an array")
     names = set()
     for block in blocks.all_blocks(mesh):
         # VTK takes no name with half of a surrogate pair.
@@ -271,10 +270,8 @@ def provenance(mesh: pv.DataSet | pv.MultiBlock, /, name: str = "luminance") -> 
         names |= {key for key in _names(block) if read(block, key) is not None}
     if not names:
         remedy = "light it first, or read it from a file format that keeps field data"
-        raise ValueError(_check.message("mesh", "one with an array by vizlight", "none", remedy))
-    raise ValueError(
-        _check.message("name", f"one of the arrays by vizlight, {sorted(names)}", repr(name))
-    )
+        raise _check.value_error("mesh", "one with an array by vizlight", "none", remedy)
+    raise _check.value_error("name", f"one of the arrays by vizlight, {sorted(names)}", repr(name))
 
 
 #: Number of values below which an array is sooner copied than shared.
@@ -283,12 +280,10 @@ _SMALL = 1 << 12
 
 def refuse_unnamed(name: str, value: object) -> None:
     """Raise TypeError for anything but a name of an array or None."""
-    if value is not None and not isinstance(value, str):
-        remedy = "attach the array to the mesh and pass its name"
-        got = _check.describe(value)
-        raise TypeError(_check.message(name, "the name of a point array", got, remedy))
+    expected, remedy = "the name of a point array", "attach the array to the mesh and pass its name"
+    _check.instance(name, value, str | None, expected, remedy=remedy)
     if value is not None:
-        _check.text(name, value, expected="the name of a point array")
+        _check.text(name, value, expected=expected)
 
 
 def averaged(mesh: DataSetT, *names: object) -> DataSetT:
@@ -321,7 +316,7 @@ def scalars_of(mesh: pv.DataSet, argument: str, name: object) -> AnyArray:
     names = [key for key in data if data[key].ndim == 1]
     if name not in names:
         expected = f"a point array of one component, {_check.one_of(names)}"
-        raise ValueError(_check.message(argument, expected, repr(name)))
+        raise _check.value_error(argument, expected, repr(name))
     return np.asarray(data[str(name)])
 
 

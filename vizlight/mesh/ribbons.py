@@ -260,8 +260,7 @@ def _neighbours(piece: Indices) -> tuple[Indices, Indices]:
 
 def _unit(rows: Array) -> Array:
     lengths = np.linalg.norm(rows, axis=-1, keepdims=True)
-    unit: Array = rows / np.where(lengths > 0, lengths, 1.0)
-    return unit
+    return rows / np.where(lengths > 0, lengths, 1.0)
 
 
 def _dot(a: Array, b: Array) -> Array:

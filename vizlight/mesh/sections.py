@@ -8,8 +8,6 @@ import pyvista as pv
 from vizlight.mesh import blocks, meaning
 from vizlight.mesh.blocks import DataSetT
 
-__all__ = ["stretch", "stretched"]
-
 #: Width over height of a section whose axes have different units.
 SHAPE = 1.6
 #: Width over height up to which a section of lengths, or of numbers of cells, keeps its shape.

@@ -15,20 +15,6 @@ from vizlight._types import Foreign
 from vizlight.mesh import blocks, dates, meaning
 from vizlight.vtk.arrays import vectors_of
 
-__all__ = [
-    "STEPS",
-    "TIME",
-    "NoStepError",
-    "Series",
-    "at",
-    "chosen",
-    "note",
-    "of",
-    "read",
-    "reader_of",
-    "times_of",
-]
-
 
 class Series:
     """Meshes with the same points at rising times.
@@ -59,13 +45,13 @@ class Series:
                 source, reason = None, f" ({error})"
             if source is None:
                 expected, got = "the path of a file that PyVista reads", f"'{path}'{reason}"
-                raise ValueError(_check.message("series", expected, got))
+                raise _check.value_error("series", expected, got)
         # By its method, not its class: the wrappers of VTK's readers below are no readers of
         # PyVista.
         if hasattr(source, "read"):
             if times is not None:
                 remedy = "leave times= out"
-                raise ValueError(_check.message("times", "the times of the reader", "both", remedy))
+                raise _check.value_error("times", "the times of the reader", "both", remedy)
             self._reader, times = source, times_of(source)
         # A MultiBlock is a sequence, too: its blocks are then the steps.
         elif isinstance(source, Sequence):
@@ -73,20 +59,20 @@ class Series:
             times = _own_times(source) if times is None else times
         else:
             expected = "meshes, a reader with time values, or the path of its file"
-            raise TypeError(_check.message("series", expected, _check.describe(source)))
+            raise _check.type_error("series", expected, source)
         #: Times of the steps, shape (S,).
         self.times = _check.floats("times", times).astype(np.float64)
         if self._meshes is not None and self.times.shape != (len(self._meshes),):
             expected = f"{len(self._meshes)} times, one for each mesh"
-            raise ValueError(_check.message("times", expected, f"shape {self.times.shape}"))
+            raise _check.value_error("times", expected, f"shape {self.times.shape}")
         if len(self.times) < 2:
-            raise ValueError(_check.message("series", "two steps or more", str(len(self.times))))
+            raise _check.value_error("series", "two steps or more", str(len(self.times)))
         # A difference with NaN is not above 0, so NaN counts as a fall, too.
         finite = np.isfinite(self.times)
         falls = np.flatnonzero(~(np.diff(self.times) > 0) | ~finite[1:] | ~finite[:-1])
         if len(falls):
             got = f"{self.times[falls[0]]:g} before {self.times[falls[0] + 1]:g}"
-            raise ValueError(_check.message("times", "finite times that rise", got))
+            raise _check.value_error("times", "finite times that rise", got)
         # The first mesh stays in memory: the points of all others are compared with its points.
         self._first: pv.DataSet | None = None
 
@@ -107,7 +93,7 @@ class Series:
             mesh = mesh[0] if len(mesh) == 1 else blocks.joined(mesh)
         name = self.name(step)
         if not isinstance(mesh, pv.DataSet) or not mesh.n_cells:
-            raise TypeError(_check.message(name, "a mesh with cells", _check.describe(mesh)))
+            raise _check.type_error(name, "a mesh with cells", mesh)
         if self._first is None:
             self._first = mesh if step == 0 else self.mesh(0)
         first = self._first
@@ -118,7 +104,7 @@ class Series:
             expected = f"the {first.n_points} points of {self.name(0)}"
             remedy = "sample all steps to one mesh by mesh.sample(step)"
             got = f"{mesh.n_points} points" + (", others" if same else "")
-            raise ValueError(_check.message(name, expected, got, remedy))
+            raise _check.value_error(name, expected, got, remedy)
         return mesh
 
     def vectors(self, step: int, array: str) -> NDArray[np.float64]:
@@ -134,7 +120,7 @@ class Series:
         if array not in mesh.point_data:
             there = ", ".join(map(repr, mesh.point_data)) or "none"
             expected = f"the point array {array!r} ({there})"
-            raise ValueError(_check.message(name, expected, "none of that name"))
+            raise _check.value_error(name, expected, "none of that name")
         rows = vectors_of(mesh, name, array, 3)
         # NaN at one point would reach all cells around it by interpolation; 0 brings particles to
         # rest.
@@ -149,7 +135,7 @@ def _own_times(meshes: Sequence[Foreign]) -> list[float]:
     missing = [i for i, mesh in enumerate(meshes) if TIME not in getattr(mesh, "field_data", {})]
     if missing:
         expected = f"times=, or meshes with the field array {TIME!r}"
-        raise ValueError(_check.message("times", expected, f"none at series[{missing[0]}]"))
+        raise _check.value_error("times", expected, f"none at series[{missing[0]}]")
     return [float(np.asarray(mesh.field_data[TIME]).ravel()[0]) for mesh in meshes]
 
 
@@ -385,8 +371,7 @@ def read(path: Path, time: object) -> pv.DataObject | None:
     times = times_of(reader)
     if reader is None or not times:
         check_single(path, time)
-        whole: pv.DataObject | None = None if reader is None else unchecked(reader)
-        return whole
+        return None if reader is None else unchecked(reader)
     index = chosen(times, time)
     mesh: pv.DataObject = marked(at(reader, times[index]), times, index)
     return mesh

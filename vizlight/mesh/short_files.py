@@ -19,8 +19,6 @@ from typing import BinaryIO
 from vizlight import _check
 from vizlight.mesh import ensight, file_parts, gltf, legacy_vtk, references, vtk_xml
 
-__all__ = ["missing_part", "triangles"]
-
 #: Bytes in which a header stands that has no end of its own.
 _HEAD = 4096
 #: Ends of names of files that name their pieces, all of which are read.

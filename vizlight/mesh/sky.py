@@ -126,11 +126,11 @@ def skies(
         # The sky of a field is the half space above it: horizons know no other.
         if up is not None and not (up[2] > 0 and up[0] == up[1] == 0):
             remedy = "leave it out, or pass the surface of the grid"
-            raise ValueError(_check.message("up", "(0, 0, 1) for a height field", up, remedy))
+            raise _check.value_error("up", "(0, 0, 1) for a height field", up, remedy)
         skies_by_number[number] = _of_field(field, error, openness=openness, report=report)
     if shapes and openness:
         remedy = "leave it out"
-        raise ValueError(_check.message("openness", "a height field", "another mesh", remedy))
+        raise _check.value_error("openness", "a height field", "another mesh", remedy)
     if shapes:
         by_rays = _by_rays([*shapes.values()], error, up, diameter, report)
         skies_by_number |= dict(zip(shapes, by_rays, strict=True))
@@ -216,7 +216,7 @@ def _by_rays(
     lines = [mesh for mesh in meshes if polylines.has_lines_only(mesh)]
     if diameter is not None and not lines:
         got = "a mesh without lines"
-        raise ValueError(_check.message("diameter", "a mesh of lines", got, "leave it out"))
+        raise _check.value_error("diameter", "a mesh of lines", got, "leave it out")
     medium: media.Medium | None = None
     thick = 0.0
     # A medium also gives the default diameter, which rays need for their tubes.
@@ -362,7 +362,7 @@ def _shape(mesh: pv.DataSet, thick: float, up: tuple[float, ...] | None) -> _Sha
     if not has_faces(surface):
         remedy = "take its surface, lines or glyphs, which have directions"
         got = f"{type(mesh).__name__} without either"
-        raise ValueError(_check.message("mesh", "a mesh with faces or lines", got, remedy))
+        raise _check.value_error("mesh", "a mesh with faces or lines", got, remedy)
     points = np.asarray(pv.wrap(surface).points, np.float64)
     faces = np.asarray(triangles(faces_only(surface)), np.intp)
     view = None if up is None else View(direction=up)

@@ -9,9 +9,6 @@ from vizlight import _check
 from vizlight._types import Array
 from vizlight.mesh import blocks
 
-__all__ = ["smoothed"]
-
-
 #: Types of grids that may have one layer.
 Grid = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 
@@ -56,19 +53,18 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     Isolines of the triangles are the borders between colours on them, since both are straight in
     each triangle.
     """
-    if not isinstance(mesh, Grid):
-        raise TypeError(_check.message("mesh", "a grid", _check.describe(mesh)))
+    _check.instance("mesh", mesh, Grid, "a grid")
     factor = _check.integer("factor", factor, low=1, high=64)
     sizes = tuple(size for size in mesh.dimensions if size > 1)
     if len(sizes) != 2:
-        raise ValueError(_check.message("mesh", "a grid of one layer", mesh.dimensions))
+        raise _check.value_error("mesh", "a grid of one layer", mesh.dimensions)
     _check.text("name", name, expected="the name of an array")
     if name not in mesh.point_data or np.ndim(mesh.point_data[name]) != 1:
         expected = "the name of an array of one component at points"
-        raise ValueError(_check.message("name", expected, repr(name)))
+        raise _check.value_error("name", expected, repr(name))
     rows = np.column_stack([mesh.points, mesh.point_data[name]]).astype(np.float64)
     if not np.isfinite(rows).all():
-        raise ValueError(_check.message("mesh", "finite places and values", "others"))
+        raise _check.value_error("mesh", "finite places and values", "others")
     # VTK counts columns first.
     table: Array = rows.reshape(sizes[1], sizes[0], 4)
     for _ in range(2):

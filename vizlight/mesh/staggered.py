@@ -9,8 +9,6 @@ import numpy as np
 
 from vizlight._types import Array, Foreign
 
-__all__ = ["alike", "to_middles"]
-
 #: Distance of a place from the middle of two others, as a share of their distance.
 MIDDLE = 0.01
 

@@ -62,8 +62,8 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
     """
     if mesh.GetMaxSpatialDimension() == 3:
         remedy = "take the mesh's extract_surface() or a contour"
-        raise ValueError(
-            _check.message("mesh", "faces or lines to refine", "cells that fill space", remedy)
+        raise _check.value_error(
+            "mesh", "faces or lines to refine", "cells that fill space", remedy
         )
     if isinstance(mesh, pv.PolyData):
         polydata = mesh
@@ -88,7 +88,7 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
         polydata.GetFieldData().DeepCopy(mesh.GetFieldData())
     if not (has_faces(polydata) or polydata.n_lines):
         remedy = "between points alone there is no light to refine"
-        raise ValueError(_check.message("mesh", "faces or lines", "points alone", remedy))
+        raise _check.value_error("mesh", "faces or lines", "points alone", remedy)
     return polydata
 
 

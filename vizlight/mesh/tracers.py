@@ -237,7 +237,7 @@ def check_spacing(tracer: CellTracer, spacing: float, size: float) -> None:
         # The mesh has size 1 here; messages are in the unit of the user.
         ends = f"from {size * least:.3g} to {size * MOST_SPACING:.3g}"
         expected = f"a number {ends} for a mesh of this size"
-        raise ValueError(_check.message("spacing", expected, f"{size * spacing:.3g}"))
+        raise _check.value_error("spacing", expected, f"{size * spacing:.3g}")
 
 
 def scaled(mesh: pv.DataSet, vectors: Array) -> pv.DataSet:

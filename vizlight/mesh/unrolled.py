@@ -12,8 +12,6 @@ import pyvista as pv
 from vizlight._types import AnyArray, Array, Bools, Indices, Raw
 from vizlight.mesh import blocks, globes, meaning
 
-__all__ = ["Faces", "of_grid", "plain", "turn_vectors", "unrolled"]
-
 #: Distance of a node from a pole, in degrees, below which it has no longitude of its own.
 AT_POLE = 1e-4
 #: Distance from the last column of a grid to the first, in steps between columns, below which the

@@ -15,8 +15,6 @@ import numpy as np
 from vizlight._types import Array, Bools, Foreign
 from vizlight.mesh import unrolled
 
-__all__ = ["Topology", "surface", "tables", "topology", "with_nodes"]
-
 #: Numbers of nodes of a face that a table of a file without names may have.
 _CORNERS = range(3, 17)
 #: Names of dimensions of the corners of a face.

@@ -13,8 +13,6 @@ import numpy as np
 
 from vizlight.mesh import file_parts
 
-__all__ = ["missing_block", "missing_part", "missing_piece"]
-
 #: Most letters of a number.
 _LONGEST = 100
 #: Largest ratio of data to what a compressor of VTK makes of them.

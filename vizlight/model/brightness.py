@@ -117,7 +117,7 @@ def dimensions(k: int, n: int) -> tuple[int, int]:
     most = int(_check.LARGEST)
     k, n = _check.integer("k", k, low=1, high=most), _check.integer("n", n, low=2, high=most)
     if k >= n:
-        raise ValueError(_check.message("k", f"a dimension less than n = {n}", k))
+        raise _check.value_error("k", f"a dimension less than n = {n}", k)
     return k, n
 
 

@@ -45,7 +45,7 @@ def distance(d: ArrayLike, c1: float, c2: float, c3: float, /) -> Array:
     """
     lengths = _check.floats("d", d)
     if not np.all(lengths >= 0):
-        raise ValueError(_check.message("d", "distances of 0 or more", _check.describe(d)))
+        raise _check.value_error("d", "distances of 0 or more", _check.describe(d))
     factors = [_check.number(name, c) for name, c in (("c1", c1), ("c2", c2), ("c3", c3))]
     return fading(lengths, attenuation("c1, c2, c3", factors))
 
@@ -56,7 +56,7 @@ def attenuation(name: str, value: object) -> tuple[float, float, float]:
     if array.shape != (3,) or not np.all(np.isfinite(array) & (array >= 0)) or not array.any():
         expected = "three coefficients (constant, linear, quadratic) of 0 or more, not all 0"
         remedy = "pass (1, 0, 0) for a light without attenuation"
-        raise ValueError(_check.message(name, expected, _check.describe(value), remedy))
+        raise _check.value_error(name, expected, _check.describe(value), remedy)
     c1, c2, c3 = (float(c) for c in array)
     return c1, c2, c3
 
@@ -124,16 +124,16 @@ def depth_cue(
     front, back = _check.number("front", front), _check.number("back", back)
     if front == back:
         remedy = "pass two different depths"
-        raise ValueError(_check.message("front", "a depth other than back", front, remedy))
+        raise _check.value_error("front", "a depth other than back", front, remedy)
     depth, light, fade = (
         _check.floats(name, value)
         for name, value in (("z", z), ("intensity", intensity), ("cue", cue))
     )
     if np.any(np.isnan(depth)):
-        raise ValueError(_check.message("z", "depths without NaN", _check.describe(z)))
+        raise _check.value_error("z", "depths without NaN", _check.describe(z))
     for name, value in (("intensity", light), ("cue", fade)):
         if not np.all(np.isfinite(value)):
-            raise ValueError(_check.message(name, "finite light", _check.describe(value)))
+            raise _check.value_error(name, "finite light", _check.describe(value))
     depth, light, fade = _check.together(z=depth, intensity=light, cue=fade)
     scales = (
         _check.number(name, value, low=0.0, high=1.0)
@@ -185,7 +185,7 @@ def fur(height: ArrayLike, sin_alpha: ArrayLike, density: float, /) -> Array:
     density = _check.number("density", density, low=0.0, high=1.0)
     heights = _check.floats("height", height)
     if not np.all(heights >= 0):
-        raise ValueError(_check.message("height", "heights of 0 or more", _check.describe(height)))
+        raise _check.value_error("height", "heights of 0 or more", _check.describe(height))
     sines = _check.floats_in("sin_alpha", sin_alpha, 0.0, 1.0, "sines")
     heights, sines = _check.together(height=heights, sin_alpha=sines)
     if density == 0:

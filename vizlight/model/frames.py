@@ -145,7 +145,7 @@ def as_rows(name: str, value: ArrayLike, *, full: bool) -> Array:
     if not 0 < k < n + full:
         expected = f"0 < k {'<=' if full else '<'} n rows of n components, shape (..., k, n)"
         remedy = "for one vector per point pass v[..., None, :]"
-        raise ValueError(_check.message(name, expected, f"shape {array.shape}", remedy))
+        raise _check.value_error(name, expected, f"shape {array.shape}", remedy)
     return array
 
 
@@ -162,12 +162,10 @@ def as_frame(frame: ArrayLike) -> Array:
     # Negated, since a row that is not finite gives NaN, for which no comparison holds.
     if not worst <= SLACK * float(np.sqrt(np.finfo(array.dtype).eps)):
         remedy = "call vizlight.model.frames.orthonormalize first"
-        got = f"rows off by {worst:.2g}"
-        raise ValueError(_check.message("frame", "orthonormal rows", got, remedy))
+        raise _check.value_error("frame", "orthonormal rows", f"rows off by {worst:.2g}", remedy)
     return array
 
 
 def result(value: Array) -> Array:
     """Return an array unchanged, and a 0-dimensional array as a NumPy scalar."""
-    scalar: Array = value[()]
-    return scalar
+    return value[()]

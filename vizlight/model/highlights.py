@@ -385,7 +385,7 @@ def phong_from_blinn(
     by = _factor(light_eye_angle, factor)
     if np.any(by < 1e-9):
         remedy = "at pi no half vector exists"
-        raise ValueError(_check.message("light_eye_angle", "an angle below pi", "pi", remedy))
+        raise _check.value_error("light_eye_angle", "an angle below pi", "pi", remedy)
     power = _powers("shininess", shininess, high=_check.LARGEST**2)
     power, by = _check.together(shininess=power, light_eye_angle=by)
     return result(power / by)
@@ -462,10 +462,8 @@ def _angles(name: str, value: ArrayLike) -> Array:
     """Return angles from 0 to pi; pi rounded up to a narrower type is accepted and clamped."""
     angle = _check.floats(name, value)
     if not np.all((angle >= 0) & (angle <= np.pi * (1 + 1e-6))):
-        expected = "angles from 0 to pi, in radians"
-        raise ValueError(_check.message(name, expected, _check.describe(value)))
-    clamped: Array = np.minimum(angle, angle.dtype.type(np.pi))
-    return clamped
+        raise _check.value_error(name, "angles from 0 to pi, in radians", _check.describe(value))
+    return np.minimum(angle, angle.dtype.type(np.pi))
 
 
 def _powers(name: str, value: ArrayLike, low: float = 0.0, high: float = _check.LARGEST) -> Array:

@@ -297,7 +297,7 @@ def _check_options(filter_name: str, options: Keywords, contour: str | None, gho
     _check.choice("filter", filter_name, tuple(task.FILTERS))
     if options.get("bundle"):  # it depends on a mesh as a whole
         remedy = "lines of all pieces dim one another; light them together"
-        raise ValueError(_check.message("bundle", "no such option for pieces", "one", remedy))
+        raise _check.value_error("bundle", "no such option for pieces", "one", remedy)
     function: Foreign = task.FILTERS[filter_name]
     parameters = [*inspect.signature(function).parameters]
     for name in options:
@@ -308,15 +308,15 @@ def _check_options(filter_name: str, options: Keywords, contour: str | None, gho
     for name in ("tangents", "normals", "conditioned"):
         if options.get(name) is not None and not isinstance(options[name], str | bool):
             expected = "the name of a point array that every piece has"
-            raise TypeError(_check.message(name, expected, _check.describe(options[name])))
+            raise _check.type_error(name, expected, options[name])
     light_options = LightOptions.of(options)
     if light_options.facing == "outward":
         remedy = "what is closed faces outward by facing='auto'"
         expected = "'auto', 'eye' or 'as given'"
-        raise ValueError(_check.message("facing", expected, "'outward'", remedy))
+        raise _check.value_error("facing", expected, "'outward'", remedy)
     # At a border without neighbours the gradient would be one-sided.
     if options.get("normals") == task.GRADIENT and contour is not None and not ghost:
-        raise ValueError(_check.message("ghost", "1 at least beside normals='gradient'", ghost))
+        raise _check.value_error("ghost", "1 at least beside normals='gradient'", ghost)
 
 
 def _with_sides(
@@ -356,8 +356,7 @@ def _spare_sources(parts: Sequence[Piece], path: Path, outputs: Sequence[Path]) 
         source = origin.resolve()
         # A source that is named like a piece may be taken for one of an earlier run, and removed.
         if source in taken or (source.parent == folder and pattern.fullmatch(source.name)):
-            expected = "another name than the sources'"
-            raise PieceError(_check.message("out", expected, f"'{path}'"))
+            raise PieceError(_check.message("out", "another name than the sources'", f"'{path}'"))
 
 
 def _own_pieces(stem: str) -> re.Pattern[str]:
@@ -472,7 +471,7 @@ def _ends(summaries: Sequence[PieceSummary], contour: str) -> tuple[float, float
     ends = [facts.ranges[contour] for facts in summaries if contour in facts.ranges]
     if contour not in names or not ends:
         expected = f"a point array of one component, {_check.one_of(names)}"
-        raise ValueError(_check.message("contour", expected, repr(contour)))
+        raise _check.value_error("contour", expected, repr(contour))
     return min(low for low, _ in ends), max(high for _, high in ends)
 
 

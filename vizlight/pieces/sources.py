@@ -213,8 +213,7 @@ class Slabs:
         origin: VectorLike = (0.0, 0.0, 0.0),
     ) -> None:
         if not isinstance(arrays, Mapping) or not arrays:
-            got = _check.describe(arrays)
-            raise TypeError(_check.message("arrays", "a dict of point arrays by name", got))
+            raise _check.type_error("arrays", "a dict of point arrays by name", arrays)
         shapes = {}
         self.bytes_per_node = 0.0
         for name, array in arrays.items():
@@ -224,12 +223,12 @@ class Slabs:
                 expected = (
                     f"an array of shape (nz, ny, nx) or (nz, ny, nx, components) for {name!r}"
                 )
-                raise ValueError(_check.message("arrays", expected, _check.describe(array)))
+                raise _check.value_error("arrays", expected, _check.describe(array))
             shapes[name] = tuple(int(size) for size in shape[:3])
             self.bytes_per_node += np.dtype(dtype).itemsize * math.prod(shape[3:])
         if len(set(shapes.values())) > 1:
             got = ", ".join(f"{name!r} with {shape}" for name, shape in shapes.items())
-            raise ValueError(_check.message("arrays", "one number of nodes along each axis", got))
+            raise _check.value_error("arrays", "one number of nodes along each axis", got)
         self.arrays = {name: _unmapped(array) for name, array in arrays.items()}
         steps = [_check.positive("spacing", step) for step in _check.vector("spacing", spacing)]
         self.spacing = tuple(steps)

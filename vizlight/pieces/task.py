@@ -56,7 +56,7 @@ class Job:
         if self.contour is not None:
             _check.text("contour", self.contour, expected="the name of a point array")
         elif self.level is not None:
-            raise ValueError(_check.message("level", "contour= beside it", self.level))
+            raise _check.value_error("level", "contour= beside it", self.level)
         _check.fields(self, _check.number, "level", optional=True)
 
     @property
@@ -265,7 +265,7 @@ def light(piece: Piece, job: Job, target: Path, whole_sides: Vote | None = None)
             share = job.options.get("occlusion")
             if share is not None and mesh.n_points and share not in mesh.point_data:
                 expected, remedy = "a point array that every piece has", "take the whole's sky"
-                raise ValueError(_check.message("occlusion", expected, repr(share), remedy))
+                raise _check.value_error("occlusion", expected, repr(share), remedy)
             lit, sharp = _lit(mesh, piece, job, whole_sides, known)
         del mesh
         inside = np.asarray(lit.point_data.pop(INSIDE, np.zeros(lit.n_points, dtype=np.bool_)))
@@ -282,7 +282,7 @@ def light(piece: Piece, job: Job, target: Path, whole_sides: Vote | None = None)
             # An index has pieces of one type of mesh, which its suffix names.
             if suffix != job.suffix:
                 expected = f"a name that ends in {INDEX[suffix]} for {type(lit).__name__}"
-                raise ValueError(_check.message("out", expected, f"*{INDEX[job.suffix]}"))
+                raise _check.value_error("out", expected, f"*{INDEX[job.suffix]}")
             done.file = files.write_mesh(lit, target.with_name(target.name + suffix)).name
     except (OSError, ValueError, TypeError) as error:
         raise PieceError(f"piece {piece.name}: {error}") from error

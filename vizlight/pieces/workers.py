@@ -48,8 +48,7 @@ class RetryingMap:
 
     def __init__(self, map: Map, retries: int, show: bool) -> None:
         if not (callable(map) or callable(getattr(map, "map", None))):
-            expected = "map, an executor or a client of Dask"
-            raise TypeError(_check.message("map", expected, _check.describe(map)))
+            raise _check.type_error("map", "map, an executor or a client of Dask", map)
         self.map, self.show = map, show
         self.retries = _check.integer("retries", retries, low=0)
 

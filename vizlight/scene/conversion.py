@@ -50,7 +50,7 @@ def to_property(values: Keywords, *, lights: Lights, view: AnyView, model: str) 
     for name, value in coefficients.items():
         if value > 1:
             remedy = "make the lights brighter instead"
-            raise ValueError(_check.message(name, "at most 1, the limit of VTK", value, remedy))
+            raise _check.value_error(name, "at most 1, the limit of VTK", value, remedy)
     power = values["shininess"]
     # VTK takes its model from the lights and has no switch for it, so that the power must change.
     if _check_model(model) != vtk_model(lamps):
@@ -74,9 +74,7 @@ def to_property(values: Keywords, *, lights: Lights, view: AnyView, model: str) 
 def property_values(source: vtkProperty, *, lights: Lights, view: AnyView, model: str) -> Keywords:
     """Return the fields of a property's material; see :meth:`vizlight.Material.from_property`."""
     if not hasattr(source, "GetSpecularPower"):
-        raise TypeError(
-            _check.message("source", "a pyvista.Property or vtkProperty", _check.describe(source))
-        )
+        raise _check.type_error("source", "a pyvista.Property or vtkProperty", source)
     lamps, view = _check_lights(lights, view), as_view(view)
     shown = power = float(source.GetSpecularPower())
     if _check_model(model) != vtk_model(lamps):
@@ -118,7 +116,7 @@ def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
     several = isinstance(lights, Iterable) and getattr(lights, "ndim", 1) > 0
     if isinstance(lights, str) or not (several or isinstance(lights, Light) or _is_vtk(lights)):
         expected = "a vizlight.Light, a pyvista.Light or a sequence of them"
-        raise TypeError(_check.message("lights", expected, _check.describe(lights)))
+        raise _check.type_error("lights", expected, lights)
     converted: list[Light] = []
     for light in lights if isinstance(lights, Iterable) else [lights]:
         if _is_vtk(light):
@@ -137,7 +135,7 @@ def _fixed(light: vtkLight, view: AnyView) -> tuple[Light, ...]:
     if moves and light.GetPositional() and not is_camera(view):
         expected, got = "a pyvista.Camera as view= beside a lamp that moves with it", view
         remedy = "or take both by Scene.from_plotter(plotter)"
-        raise ValueError(_check.message("lights", expected, got, remedy))
+        raise _check.value_error("lights", expected, got, remedy)
     return tuple(lights_of([light], view if is_camera(view) else None))
 
 
@@ -153,14 +151,14 @@ def _check_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
         # A headlight has neither, and is in any space.
         n = len(light.direction or light.position or ()) or 3
         if n != 3:
-            raise ValueError(_check.message("lights", "vectors of 3 components, as in VTK", n))
+            raise _check.value_error("lights", "vectors of 3 components, as in VTK", n)
     return lamps
 
 
 def _check_model(model: str) -> str:
     if not (isinstance(model, str) and model in ("phong", "blinn")):
         expected = "'phong' or 'blinn', which VTK can approximate"
-        raise ValueError(_check.message("model", expected, _check.describe(model)))
+        raise _check.value_error("model", expected, _check.describe(model))
     return model
 
 

@@ -103,23 +103,23 @@ class Light:
             remedy = "Light.headlight() makes a light that follows the view"
             if self.direction is None:
                 got = "neither"
-            raise ValueError(_check.message("Light", expected, got, remedy))
+            raise _check.value_error("Light", expected, got, remedy)
         if self.direction is not None and self.attenuation != NO_ATTENUATION:
             expected = "(1, 0, 0) for a light at infinity, which has no distance"
             remedy = "give the light a position="
-            raise ValueError(_check.message("attenuation", expected, self.attenuation, remedy))
+            raise _check.value_error("attenuation", expected, self.attenuation, remedy)
 
     def _check_following(self) -> None:
         """Check a light that follows the view; a direction toward the eye makes a headlight."""
         if self.position is not None:
             expected = "no position with follows_view=True"
             remedy = "pass direction= in the frame of the eye: x right, y up, z toward the eye"
-            raise ValueError(_check.message("position", expected, self.position, remedy))
+            raise _check.value_error("position", expected, self.position, remedy)
         if self.direction is None:
             return
         if len(self.direction) != 3:
             expected = "3 components with follows_view=True, in the frame of the eye"
-            raise ValueError(_check.message("direction", expected, len(self.direction)))
+            raise _check.value_error("direction", expected, len(self.direction))
         x, y, z = self.direction
         # z of the eye's frame is toward the eye: kept as None, a headlight has one form only.
         if x == y == 0 and z > 0:
@@ -250,7 +250,7 @@ class Light:
         )
         if len(first) != len(last):
             expected = f"{len(first)} components, as start has"
-            raise ValueError(_check.message("end", expected, f"{len(last)}"))
+            raise _check.value_error("end", expected, f"{len(last)}")
         places, weights = np.polynomial.legendre.leggauss(count)
         return tuple(
             cls(

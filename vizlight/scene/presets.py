@@ -218,7 +218,7 @@ def optional_scene(scene: AnyScene | None) -> Scene | None:
     if isinstance(scene, str):
         if scene not in PRESETS:
             expected = f"a vizlight.Scene, or {', '.join(map(repr, PRESETS))}"
-            raise ValueError(_check.message("scene", expected, repr(scene)))
+            raise _check.value_error("scene", expected, repr(scene))
         preset: Scene = PRESETS[scene]()
         return preset
     _check.instance("scene", scene, Scene, optional=True)
@@ -346,4 +346,4 @@ def _view(eye: Eye) -> View | None:
         return as_view(cast("vtkCamera", eye) if of_plotter is None else of_plotter)
     except TypeError:
         expected = "a vizlight.View, a pyvista.Camera, a pyvista.Plotter or None"
-        raise TypeError(_check.message("view", expected, _check.describe(eye))) from None
+        raise _check.type_error("view", expected, eye) from None

@@ -114,9 +114,7 @@ class Scene:
         # Light is computed from products of these vectors, which must be of one space.
         sizes = _sizes(lights, view)
         if len(sizes) > 1:
-            raise ValueError(
-                _check.message("Scene", "vectors of one space", f"{sorted(sizes)} components")
-            )
+            raise _check.value_error("Scene", "vectors of one space", f"{sorted(sizes)} components")
 
     @property
     def n(self) -> int | None:
@@ -149,7 +147,7 @@ class Scene:
         offset = _check.vector("offset", offset)
         if self.n not in (None, len(offset)):
             expected = f"{self.n} components, as the vectors of the scene have"
-            raise ValueError(_check.message("offset", expected, len(offset)))
+            raise _check.value_error("offset", expected, len(offset))
         # A light at infinity has no place that could move.
         lights = tuple(
             dataclasses.replace(light, position=tuple(np.add(light.position, offset)))
@@ -253,9 +251,7 @@ class Scene:
         """
         renderer = getattr(plotter, "renderer", None)
         if renderer is None or not hasattr(renderer, "GetLights"):
-            raise TypeError(
-                _check.message("plotter", "a pyvista.Plotter", _check.describe(plotter))
-            )
+            raise _check.type_error("plotter", "a pyvista.Plotter", plotter)
         # To read it makes PyVista set a camera that is not set yet, as its show does.
         camera, own_view = plotter.camera, "view" not in fields
         seen = View.from_camera(camera)
@@ -263,7 +259,7 @@ class Scene:
         fields.setdefault("lights", list(conversion.lights_of(renderer.GetLights(), camera)))
         if actor is not None:
             if "material" in fields:
-                raise ValueError(_check.message("material", "an actor alone", "both"))
+                raise _check.value_error("material", "an actor alone", "both")
             lights, view = fields["lights"], fields["view"]
             fields["material"] = _of_actor(actor, lights, view, model)
             # A lone headlight's highlight is as from an eye at infinity in VTK.
@@ -291,7 +287,7 @@ def _of_actor(
     """Return the material of an actor; where data colour it, without a colour of its own."""
     mapper = actor.GetMapper() if hasattr(actor, "GetMapper") else None
     if mapper is None or not hasattr(actor, "GetProperty"):
-        raise TypeError(_check.message("actor", "a pyvista.Actor", _check.describe(actor)))
+        raise _check.type_error("actor", "a pyvista.Actor", actor)
     actor_property = drawn = actor.GetProperty()
     if mapper.GetScalarVisibility():
         drawn = type(actor_property)()
@@ -312,8 +308,8 @@ def _fields(
     names = [field.name for field in dataclasses.fields(kind)]
     expected = f"a dict of {', '.join(names)}"
     if not isinstance(values, Mapping):
-        raise TypeError(_check.message(name, expected, _check.describe(values)))
+        raise _check.type_error(name, expected, values)
     for key in values:
         if key not in names:
-            raise ValueError(_check.message(name, expected, repr(key)))
+            raise _check.value_error(name, expected, repr(key))
     return dict(values)

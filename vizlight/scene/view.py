@@ -71,21 +71,21 @@ class View:
         parallel = _check.boolean("parallel", parallel)
         if position is None and direction is None:
             expected = "position= (perspective) or direction= (parallel)"
-            raise ValueError(_check.message("View", expected, "neither"))
+            raise _check.value_error("View", expected, "neither")
         if parallel and direction is None:
             expected = "the direction toward the eye of a parallel view"
-            raise ValueError(_check.message("direction", expected, None))
+            raise _check.value_error("direction", expected, None)
         if not parallel and position is None:
             expected = "the eye's position of a perspective view"
-            raise ValueError(_check.message("position", expected, None))
+            raise _check.value_error("position", expected, None)
         n = len(position or direction or ())
         for name, other in (("direction", direction), ("up", up)):
             if other is not None and len(other) != n:
                 expected = f"{n} components like {'position' if position else 'direction'}"
-                raise ValueError(_check.message(name, expected, len(other)))
+                raise _check.value_error(name, expected, len(other))
         if up is not None and direction is not None and _parallel(up, direction):
             expected = "a direction that is not parallel to direction="
-            raise ValueError(_check.message("up", expected, up))
+            raise _check.value_error("up", expected, up)
         _check.set_fields(self, position=position, direction=direction, parallel=parallel, up=up)
 
     @classmethod
@@ -129,7 +129,7 @@ class View:
         if self.direction is None:
             expected = "a view with a direction, by which a light beside the eye turns"
             remedy = "pass View(direction=), or View.from_camera(camera)"
-            raise ValueError(_check.message("view", expected, self, remedy))
+            raise _check.value_error("view", expected, self, remedy)
         toward = unit(self.direction)
         n = len(toward)
         if n == 2:
@@ -173,9 +173,7 @@ class View:
             raise TypeError(_no_camera("camera", "a pyvista.Camera or vtkCamera", camera))
         if not any(camera.GetDirectionOfProjection()):
             got, remedy = f"both at {camera.GetPosition()}", "move the mesh to the origin"
-            raise ValueError(
-                _check.message("camera", "an eye away from its focal point", got, remedy)
-            )
+            raise _check.value_error("camera", "an eye away from its focal point", got, remedy)
         # VTK's direction goes from the eye into the scene, one of a view toward the eye.
         direction = tuple(-x for x in camera.GetDirectionOfProjection())
         up = tuple(camera.GetViewUp())
@@ -245,7 +243,7 @@ class DepthCue:
         )
         # The scale goes from one depth to the other, and is undefined where both are one.
         if self.front is not None and self.front == self.back:
-            raise ValueError(_check.message("front", "a depth other than back", self.front))
+            raise _check.value_error("front", "a depth other than back", self.front)
 
 
 def as_view(view: View | vtkCamera | None) -> View | None:

@@ -137,7 +137,7 @@ def exposure_of(light: ArrayLike, /) -> float:
     if values.ndim == 2 and values.shape[1] == 3:
         values = values @ np.array(formulas.LUMA)
     if values.ndim != 1:
-        raise ValueError(_check.message("light", "an array of shape (N,) or (N, 3)", values))
+        raise _check.value_error("light", "an array of shape (N,) or (N, 3)", values)
     values = values[np.isfinite(values)]
     high = float(np.percentile(values, EXPOSED_SHARE, method="lower")) if len(values) else 0.0
     return float(np.clip(1 / high, 1e-9, _check.LARGEST)) if high > 0 else 1.0
@@ -211,7 +211,7 @@ def displayable(rgb: ArrayLike, /) -> Array:
     """
     colors: Array = np.asarray(_check.reals("rgb", rgb), np.float64)
     if colors.ndim < 1 or colors.shape[-1] != 3:
-        raise ValueError(_check.message("rgb", "an array of shape (..., 3)", colors))
+        raise _check.value_error("rgb", "an array of shape (..., 3)", colors)
     # An infinite channel over an infinite largest one would be NaN.
     bright = np.clip(colors, 0.0, _LARGEST)
     return np.asarray(formulas.in_range(bright, bright.max(axis=-1, keepdims=True)))

@@ -319,11 +319,11 @@ def depth_range(
     """
     _check.instance("scene", scene, Scene)
     if scene.view is None:
-        raise ValueError(_check.message("scene", "a view, from which depth is measured", None))
+        raise _check.value_error("scene", "a view, from which depth is measured", None)
     points = array_source("points", points)
     n = len(scene.view.position or scene.view.direction or ())
     if len(points.shape) != 2 or points.shape[1] != n:
-        raise ValueError(_check.message("points", f"shape (N, {n})", f"shape {points.shape}"))
+        raise _check.value_error("points", f"shape (N, {n})", f"shape {points.shape}")
     # In blocks: points may be made on demand, and a copy in float64 would take twice their memory.
     block = _check.integer("block", block, low=1)
     near, far = np.inf, -np.inf

@@ -203,11 +203,11 @@ class ShadingInputs:
         shape = tuple(self.points.shape)
         if len(shape) != 2 or shape[1] < 2:
             got = f"shape {shape}"
-            raise ValueError(_check.message("points", "shape (N, n), n of 2 or more", got))
+            raise _check.value_error("points", "shape (N, n), n of 2 or more", got)
         count, n = shape
         rows, rest = divmod(count, _check.integer("repeat", self.repeat, low=1))
         if rest:
-            raise ValueError(_check.message("repeat", f"a divisor of {count} points", self.repeat))
+            raise _check.value_error("repeat", f"a divisor of {count} points", self.repeat)
         # Tangents may be shared by the points of a row, or each point has its own.
         for name, array, counts in (
             ("tangents", self.tangents, {count, rows}),
@@ -218,9 +218,7 @@ class ShadingInputs:
         _check.boolean("two_sided", self.two_sided)
         _check.number("fur", self.fur, low=0.0, high=1.0)
         if (self.fur_height is None) == bool(self.fur):
-            raise ValueError(
-                _check.message("fur_height", "fur_height and fur= together", "one of them")
-            )
+            raise _check.value_error("fur_height", "fur_height and fur= together", "one of them")
         for name, array, expected in (
             ("normals", self.normals, (rows, n)),
             ("fur_height", self.fur_height, (count,)),
@@ -230,12 +228,11 @@ class ShadingInputs:
         ):
             if array is not None and tuple(array.shape) != expected:
                 got = f"shape {tuple(array.shape)}"
-                raise ValueError(_check.message(name, f"shape {expected}", got))
+                raise _check.value_error(name, f"shape {expected}", got)
         if self.shadow is not None:
             got = f"shape {tuple(self.shadow.shape)}" if self.normals is not None else "no normals"
             if got != f"shape {(count, lights)}":
-                expected_shadow = f"shape ({count}, {lights}), normals"
-                raise ValueError(_check.message("shadow", expected_shadow, got))
+                raise _check.value_error("shadow", f"shape ({count}, {lights}), normals", got)
 
 
 def array_source(name: str, value: ArrayLike | ArraySource) -> ArraySource:
@@ -265,4 +262,4 @@ def _check_tangents(name: str, shape: tuple[int, ...], counts: set[int], n: int)
     if not 0 < k < n:
         count = " or ".join(str(number) for number in sorted(counts))
         expected = f"shape ({count}, k, {n}) or ({count}, {n} k) with k < {n}, as points has {n}"
-        raise ValueError(_check.message(name, expected, f"shape {shape}"))
+        raise _check.value_error(name, expected, f"shape {shape}")

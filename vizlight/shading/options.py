@@ -104,11 +104,11 @@ class Bundle:
             _check.set_fields(self, diameter=_check.number("diameter", self.diameter, low=least))
         grid = _check.integer("grid", self.grid, low=4)
         if grid > FINEST_GRID:
-            raise ValueError(_check.message("grid", f"at most {FINEST_GRID}", grid))
+            raise _check.value_error("grid", f"at most {FINEST_GRID}", grid)
         depth = _check.number("depth", self.depth, low=1e-6, high=1e6)
         if self.lines is not None and not hasattr(self.lines, "GetDataObjectType"):
             expected = "a PyVista mesh of lines, or None"
-            raise TypeError(_check.message("Bundle(lines=)", expected, _check.describe(self.lines)))
+            raise _check.type_error("Bundle(lines=)", expected, self.lines)
         _check.set_fields(self, depth=depth, grid=grid)
 
 
@@ -211,7 +211,7 @@ def checked_bundle(value: object) -> bool | Bundle:
         names = [field.name for field in dataclasses.fields(Bundle)]
         if not set(value) <= set(names):
             got = _check.describe(sorted(map(str, value)))
-            raise ValueError(_check.message("bundle", f"a dict of {', '.join(names)}", got))
+            raise _check.value_error("bundle", f"a dict of {', '.join(names)}", got)
         value = Bundle(**value)
     if isinstance(value, Bundle):
         return value
@@ -232,7 +232,7 @@ def check_sides(facing: object, feature_angle: object) -> None:
     if isinstance(feature_angle, str):
         if feature_angle != "auto":
             expected = "a number of degrees from 0 to 180, 'auto' or None"
-            raise ValueError(_check.message("feature_angle", expected, repr(feature_angle)))
+            raise _check.value_error("feature_angle", expected, repr(feature_angle))
     elif feature_angle is not None:
         _check.number("feature_angle", feature_angle, low=0.0, high=180.0)
 
@@ -242,6 +242,5 @@ def _exponent(value: object) -> Exponent:
     if not isinstance(value, str):
         return _check.number("exponent", value, low=LEAST_EXPONENT, high=LARGEST_EXPONENT)
     if value != "compensated":
-        expected = "a number above 0, or 'compensated'"
-        raise ValueError(_check.message("exponent", expected, repr(value)))
+        raise _check.value_error("exponent", "a number above 0, or 'compensated'", repr(value))
     return "compensated"

@@ -361,30 +361,28 @@ def _precision(dtype: DTypeLike) -> FloatType:
         # Comparison refuses anything but a type.
         if isinstance(dtype, str | type | np.dtype) and kind == dtype:
             return kind
-    raise ValueError(_check.message("dtype", "float32 or float64", _check.describe(dtype)))
+    raise _check.value_error("dtype", "float32 or float64", _check.describe(dtype))
 
 
 def _check_layout(layout: Layout, options: ShadingOptions) -> None:
     """Check that tangents, normals and options go together."""
     n, k, normals, base, _, fur, *_ = layout
     if k is None and not normals:
-        raise ValueError(
-            _check.message("tangents", "tangents (k=) or normals (normals=True)", "neither")
-        )
+        raise _check.value_error("tangents", "tangents (k=) or normals (normals=True)", "neither")
     if k is not None and not 0 < _check.integer("k", k, low=1) < n:
-        raise ValueError(_check.message("k", f"fewer than n = {n} tangents per point", k))
+        raise _check.value_error("k", f"fewer than n = {n} tangents per point", k)
     if options.model == "cylinder" and (k, n) != (1, 3):
         got = f"a surface of {n}-space" if k is None else f"{k} tangent(s) per point in {n}-space"
         raise ValueError(not_a_line(got))
     if base and (k is None or normals):
         expected = "tangents (k=) and no normals beside it"
         got = "normals" if normals else "neither"
-        raise ValueError(_check.message("base_tangents", expected, got))
+        raise _check.value_error("base_tangents", expected, got)
     if base and not (n - 1 if k is None else k) <= base < n:
         expected = f"from k = {k} to less than n = {n} tangents per point"
-        raise ValueError(_check.message("base_tangents", expected, base))
+        raise _check.value_error("base_tangents", expected, base)
     if fur and not normals:
-        raise ValueError(_check.message("normals", "normals, across which fur stands", None))
+        raise _check.value_error("normals", "normals, across which fur stands", None)
 
 
 def not_a_line(got: str) -> str:
@@ -396,17 +394,15 @@ def not_a_line(got: str) -> str:
 def _check_scene(scene: Scene, n: int) -> None:
     """Check that the scene fits points of n components."""
     if scene.n not in (None, n):
-        raise ValueError(
-            _check.message(
-                "scene",
-                f"vectors of {n} components, as the points have",
-                f"{scene.n} components",
-                f"for light in {scene.n}-space name the arrays by positions= and tangents=",
-            )
+        raise _check.value_error(
+            "scene",
+            f"vectors of {n} components, as the points have",
+            f"{scene.n} components",
+            f"for light in {scene.n}-space name the arrays by positions= and tangents=",
         )
     cue = scene.depth_cue
     if scene.view is None and cue is not None:
         expected, remedy = "a View, which the depth cue needs", "pass view= to the Scene"
-        raise ValueError(_check.message("view", expected, None, remedy))
+        raise _check.value_error("view", expected, None, remedy)
     if cue is not None and (cue.front is None or cue.back is None):
-        raise ValueError(_check.message("depth_cue", "front= and back=", cue))
+        raise _check.value_error("depth_cue", "front= and back=", cue)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import (
+    vtkDataSetAttributes,
     vtkImageData,
     vtkPolyData,
     vtkRectilinearGrid,
@@ -18,18 +18,7 @@ from vizlight import _check
 from vizlight._types import AnyArray, Array, Dataset, Foreign, Indices, Rows
 from vizlight.model import line_fields
 from vizlight.shading.inputs import ArraySource
-from vizlight.vtk.cells import (
-    GHOSTS,
-    as_numpy,
-    as_vtk,
-    cell_arrays,
-    connectivity,
-    dimensions,
-    places,
-)
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
+from vizlight.vtk import cells as vtk_cells
 
 
 class MadePoints:
@@ -63,7 +52,7 @@ class GridPoints(MadePoints):
         # The extent of a part of an image need not begin at 0, but its origin is the place of index
         # 0.
         low = np.array(grid.GetExtent()[::2])
-        self._dimensions = dimensions(grid)
+        self._dimensions = vtk_cells.dimensions(grid)
         if isinstance(grid, vtkImageData):
             # It has the directions of the axes too, as of a scanner, beside origin and spacing.
             place = grid.GetIndexToPhysicalMatrix()
@@ -74,7 +63,7 @@ class GridPoints(MadePoints):
         else:
             # Coordinates are stored from the begin of the extent on.
             stored = (grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates())
-            axes = [as_numpy(axis).astype(np.float64) for axis in stored]
+            axes = [vtk_cells.as_numpy(axis).astype(np.float64) for axis in stored]
             self._place = lambda ijk: np.stack(
                 [axis[i] for axis, i in zip(axes, ijk.T, strict=True)], axis=1
             )
@@ -90,13 +79,13 @@ def points_of(mesh: Dataset, positions: str | None) -> ArraySource:
         return array_of(mesh, "positions", positions)
     if isinstance(mesh, vtkImageData | vtkRectilinearGrid):
         return GridPoints(mesh)
-    return places(mesh)
+    return vtk_cells.places(mesh)
 
 
 def named(data: vtkDataSetAttributes, name: str) -> AnyArray | None:
     """Return an array of the points or the cells of a dataset, None if it has none of the name."""
     array = data.GetAbstractArray(name)
-    return None if array is None else as_numpy(array)
+    return None if array is None else vtk_cells.as_numpy(array)
 
 
 def array_of(
@@ -129,7 +118,7 @@ def array_of(
             array = array.reshape(len(array), -1)
         if array.ndim == 0 or len(array) != mesh.GetNumberOfPoints():
             expected = f"{mesh.GetNumberOfPoints()} rows, one per point"
-            raise ValueError(_check.message(name, expected, _check.describe(array)))
+            raise _check.value_error(name, expected, _check.describe(array))
     return _real_rows(name, array, what)
 
 
@@ -140,7 +129,7 @@ def _real_rows(name: str, array: Array, what: str) -> Array:
     if array.ndim != 2:
         expected = "vectors, an array of 2 or more components"
         got = f"{what}1 component" if array.ndim == 1 else f"{what}shape {array.shape}"
-        raise ValueError(_check.message(name, expected, got, "name another array"))
+        raise _check.value_error(name, expected, got, "name another array")
     return array
 
 
@@ -150,7 +139,7 @@ def _named(mesh: Dataset, name: str, value: str, sizes: Collection[int]) -> Arra
         return of_points
     if mesh.GetCellData().HasArray(value):
         remedy = "call mesh.cell_data_to_point_data()"
-        raise ValueError(_check.message(name, "a point array", f"the cell array {value!r}", remedy))
+        raise _check.value_error(name, "a point array", f"the cell array {value!r}", remedy)
     there = [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
     fitting = [
         repr(array.GetName())
@@ -158,7 +147,7 @@ def _named(mesh: Dataset, name: str, value: str, sizes: Collection[int]) -> Arra
         if (array.GetNumberOfComponents() in sizes if sizes else array.GetNumberOfComponents() > 1)
     ]
     names = ", ".join(fitting) or "none"
-    raise ValueError(_check.message(name, f"the name of a point array ({names})", repr(value)))
+    raise _check.value_error(name, f"the name of a point array ({names})", repr(value))
 
 
 def vectors_of(mesh: Dataset, name: str, value: object, n: int) -> Array:
@@ -166,7 +155,7 @@ def vectors_of(mesh: Dataset, name: str, value: object, n: int) -> Array:
     array = array_of(mesh, name, value, sizes=(n,))
     if array.shape[1] != n:
         got = _components(value, array)
-        raise ValueError(_check.message(name, f"{n} components", got, "pass another array"))
+        raise _check.value_error(name, f"{n} components", got, "pass another array")
     return array
 
 
@@ -200,10 +189,10 @@ def of_components(mesh: Dataset, argument: str, names: Sequence[str]) -> Array:
         if rows is None or rows.ndim > 1 or rows.dtype.kind not in "iubf":
             got = "no such array" if rows is None else f"shape {rows.shape}, type {rows.dtype}"
             expected = "names of arrays of one component, real numbers"
-            raise ValueError(_check.message(argument, expected, f"{name!r}: {got}"))
+            raise _check.value_error(argument, expected, f"{name!r}: {got}")
         columns.append(rows)
     if len(columns) not in (2, 3):
-        raise ValueError(_check.message(argument, "two or three components", f"{len(columns)}"))
+        raise _check.value_error(argument, "two or three components", f"{len(columns)}")
     return stacked(columns)
 
 
@@ -245,12 +234,10 @@ def means(mesh: Dataset, rows: AnyArray) -> AnyArray:
     only: Foreign = mesh.NewInstance()
     only.CopyStructure(mesh)
     # Beside hidden points of a structured grid VTK's means are what stood in memory.
-    only.GetPointData().RemoveArray(GHOSTS)
-    only.GetCellData().AddArray(as_vtk(rows, "rows"))
-    mean = vtkCellDataToPointData()
-    mean.SetInputData(only)
-    mean.Update()
-    return as_numpy(mean.GetOutput().GetPointData().GetArray("rows"))
+    only.GetPointData().RemoveArray(vtk_cells.GHOSTS)
+    only.GetCellData().AddArray(vtk_cells.as_vtk(rows, "rows"))
+    averaged = vtk_cells.result(vtkCellDataToPointData(), only)
+    return vtk_cells.as_numpy(averaged.GetPointData().GetArray("rows"))
 
 
 def at_points(mesh: Dataset, rows: AnyArray) -> AnyArray | None:
@@ -268,8 +255,8 @@ def at_points(mesh: Dataset, rows: AnyArray) -> AnyArray | None:
     kinds, number = np.unique(rows, axis=0, return_inverse=True)
     values = np.zeros((mesh.GetNumberOfPoints(), *rows.shape[1:]), rows.dtype)
     pairs, cell = [], 0
-    for cells in cell_arrays(_explicit(mesh)):
-        ids, ends = connectivity(cells)
+    for cells in vtk_cells.cell_arrays(_explicit(mesh)):
+        ids, ends = vtk_cells.connectivity(cells)
         of_cell = number.reshape(-1)[cell : cell + len(ends) - 1]
         pairs.append(ids * len(kinds) + np.repeat(of_cell, np.diff(ends)))
         cell += len(ends) - 1
@@ -293,10 +280,7 @@ def _explicit(mesh: Dataset) -> Dataset:
         return mesh
     only: Foreign = mesh.NewInstance()
     only.CopyStructure(mesh)
-    append = vtkAppendFilter()
-    append.SetInputData(only)
-    append.Update()
-    explicit: vtkUnstructuredGrid = append.GetOutput()
+    explicit: vtkUnstructuredGrid = vtk_cells.result(vtkAppendFilter(), only)
     return explicit
 
 
@@ -306,5 +290,5 @@ def _checked_tangents(argument: str, value: object, array: Array, n: int) -> Arr
         allowed = " or ".join(str(k * n) for k in range(1, min(n, 5)))
         expected = f"a point array of {allowed} components, rows of {n}"
         remedy = "name another array, or name the positions in n-space by positions="
-        raise ValueError(_check.message(argument, expected, _components(value, array), remedy))
+        raise _check.value_error(argument, expected, _components(value, array), remedy)
     return array

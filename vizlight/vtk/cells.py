@@ -5,12 +5,12 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from vtkmodules.util import numpy_support
 from vtkmodules.vtkCommonCore import (
+    vtkAbstractArray,
     vtkDataArray,
     vtkPoints,
     vtkStringArray,
@@ -20,11 +20,14 @@ from vtkmodules.vtkCommonCore import (
 from vtkmodules.vtkCommonDataModel import (
     VTK_POLYHEDRON,
     vtkCellArray,
+    vtkCellData,
     vtkDataObject,
     vtkDataSet,
     vtkExplicitStructuredGrid,
+    vtkFieldData,
     vtkGenericCell,
     vtkImageData,
+    vtkPointData,
     vtkPointSet,
     vtkPolyData,
     vtkRectilinearGrid,
@@ -36,10 +39,6 @@ from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 from vizlight import _check, _pool
 from vizlight._types import AnyArray, Bools, Foreign, Indices, Raw, RawType
 from vizlight.model import kernels
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkCommonCore import vtkAbstractArray
-    from vtkmodules.vtkCommonDataModel import vtkCellData, vtkFieldData, vtkPointData
 
 #: Array in which VTK marks cells and points of other pieces, and hidden ones.
 GHOSTS = "vtkGhostType"
@@ -216,6 +215,20 @@ def finite_points(points: Raw) -> Bools:
     return np.asarray(finite.all(axis=1), dtype=np.bool_)
 
 
+def new_cells(ids: AnyArray, ends: AnyArray) -> vtkCellArray:
+    """Return cells by their corners, one cell after the other, and where each begins."""
+    cells = vtkCellArray()
+    cells.SetData(as_vtk(ends), as_vtk(ids))
+    return cells
+
+
+def result(take: Foreign, mesh: Foreign) -> Foreign:
+    """Return the output of a filter of VTK for a mesh."""
+    take.SetInputData(mesh)
+    take.Update()
+    return take.GetOutput()
+
+
 def bare_faces(surface: vtkPolyData, kept: Bools | None = None) -> vtkPolyData:
     """Return the points and the strips of a surface, and all or some of its polygons."""
     polys = surface.GetPolys()
@@ -223,8 +236,7 @@ def bare_faces(surface: vtkPolyData, kept: Bools | None = None) -> vtkPolyData:
         ids, offsets = connectivity(polys)
         size = np.diff(offsets)
         ends = np.concatenate([[0], np.cumsum(size[kept])])
-        polys = vtkCellArray()
-        polys.SetData(as_vtk(ends), as_vtk(ids[np.repeat(kept, size)]))
+        polys = new_cells(ids[np.repeat(kept, size)], ends)
     bare = vtkPolyData()
     bare.SetPoints(surface.GetPoints())
     bare.SetStrips(surface.GetStrips())
@@ -272,8 +284,7 @@ def mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
     """Return numbers of 64 bits in which each bit of the given ones changes half of the others."""
     x = (x ^ (x >> np.uint64(30))) * _MIX[0]
     x = (x ^ (x >> np.uint64(27))) * _MIX[1]
-    result: NDArray[np.uint64] = x ^ (x >> np.uint64(31))
-    return result
+    return x ^ (x >> np.uint64(31))
 
 
 def used(surface: vtkPolyData) -> Bools:
@@ -297,9 +308,7 @@ def triangles(surface: vtkPolyData) -> Indices:
     split = vtkTriangleFilter()
     split.PassVertsOff()
     split.PassLinesOff()
-    split.SetInputData(surface)
-    split.Update()
-    corners = connectivity(split.GetOutput().GetPolys())[0].reshape(-1, 3)
+    corners = connectivity(result(split, surface).GetPolys())[0].reshape(-1, 3)
     # VTK's are twice as long, and go with the filter.
     return corners.astype(np.int32 if surface.GetNumberOfPoints() < 2**31 else np.intp)
 

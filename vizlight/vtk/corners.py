@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from vizlight import _pool
 from vizlight._types import Array, Bools, Indices, Raw
@@ -14,10 +15,6 @@ from vizlight.geometry.lines.simplices import EDGES, components
 from vizlight.model import kernels
 from vizlight.vtk.cells import as_numpy, connectivity, places, triangles
 from vizlight.vtk.topology import BLOCK, double_cover
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
-
 
 #: Height of a face, and of a corner, as a share of its longest side, below which its direction is
 #: little more than rounding: it counts the less.

@@ -28,6 +28,8 @@ from vizlight.vtk.cells import (
     grid_cells,
     has_faces,
     has_marks,
+    new_cells,
+    result,
     unseen,
 )
 
@@ -114,8 +116,7 @@ class DrawnCells:
     def __getitem__(self, rows: Rows, /) -> Indices:
         """Return the points at the corners of some parts, shape (M, s)."""
         if self._size == self._part:
-            parts: Indices = np.reshape(self._ids[:], (-1, self._part))[rows]
-            return parts
+            return np.reshape(self._ids[:], (-1, self._part))[rows]
         return self._some(*self._places(rows))
 
     def polygon(self, rows: Rows) -> Indices:
@@ -287,15 +288,11 @@ class DrawnTriangles(DrawnCells):
         """Return some of the triangles into which VTK cuts polygons of many corners."""
         names, which = np.unique(polygon, return_inverse=True)
         ids, ends = self.corners(names)
-        cells, some = vtkCellArray(), vtkPolyData()
-        cells.SetData(as_vtk(ends), as_vtk(ids))
+        some = vtkPolyData()
         some.SetPoints(self._points)
-        some.SetPolys(cells)
+        some.SetPolys(new_cells(ids, ends))
         some.GetCellData().AddArray(as_vtk(np.arange(len(names)), "number"))
-        split = vtkTriangleFilter()
-        split.SetInputData(some)
-        split.Update()
-        output = split.GetOutput()
+        output = result(vtkTriangleFilter(), some)
         triangles = connectivity(output.GetPolys())[0].reshape(-1, TRIANGLE)
         count = np.bincount(as_numpy(output.GetCellData().GetArray("number")), minlength=len(names))
         # What VTK cannot cut, it does not draw: a triangle of one point.
@@ -388,18 +385,12 @@ def _without_strips(surface: vtkPolyData) -> tuple[vtkPolyData, Indices]:
     strips.SetStrips(surface.GetStrips())
     number = before + polygons + np.arange(surface.GetNumberOfStrips())
     strips.GetCellData().AddArray(as_vtk(number, "number"))
-    split = vtkTriangleFilter()
-    split.SetInputData(strips)
-    split.Update()
-    output = split.GetOutput()
+    output = result(vtkTriangleFilter(), strips)
     ids, offsets = connectivity(surface.GetPolys())
     more, ends = connectivity(output.GetPolys())
-    cells = vtkCellArray()
-    cells.SetData(
-        as_vtk(np.concatenate([offsets, offsets[-1] + ends[1:]])), as_vtk(np.append(ids, more))
-    )
     whole = bare_faces(surface)
     whole.SetStrips(vtkCellArray())
-    whole.SetPolys(cells)
+    ends = np.concatenate([offsets, offsets[-1] + ends[1:]])
+    whole.SetPolys(new_cells(np.append(ids, more), ends))
     numbers: AnyArray = as_numpy(output.GetCellData().GetArray("number"))
     return whole, np.append(before + np.arange(polygons), numbers)

@@ -43,8 +43,10 @@ from vizlight.vtk.cells import (
     grid_cells,
     has_marks,
     mixed_corners,
+    new_cells,
     places,
     point_data,
+    result,
     types_of_cells,
     unseen,
 )
@@ -224,9 +226,7 @@ def _with_walls(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
         take.PassThroughPointIdsOn()
         take.SetOriginalCellIdsName(NUMBERS)
         take.PassThroughCellIdsOn()
-    take.SetInputData(numbered)
-    take.Update()
-    surface: vtkPolyData = take.GetOutput()
+    surface: vtkPolyData = result(take, numbered)
     ids = np.rint(as_numpy(surface.GetPointData().GetArray(NUMBERS))).astype(np.intp)
     surface.GetPointData().RemoveArray(NUMBERS)
     if curved:
@@ -263,9 +263,7 @@ def _join_walls(surface: vtkPolyData, grid: Dataset) -> None:
         wall, face = order[:-1][pairs], order[1:][pairs]
         ids[corners[wall]] = ids[corners[face]]
         doubled += polygons[face].tolist()
-    wound = vtkCellArray()
-    wound.SetData(as_vtk(offsets), as_vtk(ids))
-    surface.SetPolys(wound)
+    surface.SetPolys(new_cells(ids, offsets))
     surface.BuildCells()
     for polygon in doubled:
         surface.DeleteCell(before + polygon)
@@ -292,9 +290,7 @@ def _outward(surface: vtkPolyData, grid: vtkUnstructuredGrid, cells: Indices) ->
     along = np.arange(len(ids)) - np.repeat(start, size)
     back = np.repeat(size, size) - 1 - along
     order = np.repeat(start, size) + np.where(np.repeat(inward, size), back, along)
-    polygons = vtkCellArray()
-    polygons.SetData(as_vtk(offsets), as_vtk(ids[order]))
-    return polygons
+    return new_cells(ids[order], offsets)
 
 
 def _middles(grid: vtkUnstructuredGrid) -> Array:
@@ -318,9 +314,7 @@ def _merged(surface: vtkPolyData, ids: Indices) -> tuple[vtkPolyData, Indices]:
         (surface.GetPolys, merged.SetPolys),
     ):
         corners, offsets = connectivity(get())
-        cells = vtkCellArray()
-        cells.SetData(as_vtk(offsets), as_vtk(number.reshape(-1)[corners]))
-        put(cells)
+        put(new_cells(number.reshape(-1)[corners], offsets))
     merged.GetCellData().ShallowCopy(surface.GetCellData())
     merged.GetFieldData().ShallowCopy(surface.GetFieldData())
     _take_rows(merged.GetPointData(), surface.GetPointData(), first)
@@ -377,12 +371,11 @@ def outer_faces(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
         corners, ends, cells = _without(inside, corners, ends, cells)
     marked = unseen(mesh, cells, lambda: (corners, ends))
     corners, ends, cells = _without(marked, corners, ends, cells)
-    points, polygons, whole = vtkPoints(), vtkCellArray(), vtkPolyData()
+    points, whole = vtkPoints(), vtkPolyData()
     origin, corners = np.unique(corners, return_inverse=True)
     points.SetData(as_vtk(places(mesh)[origin]))
-    polygons.SetData(as_vtk(ends), as_vtk(corners))
     whole.SetPoints(points)
-    whole.SetPolys(polygons)
+    whole.SetPolys(new_cells(corners, ends))
     if flat:
         whole.GetCellData().AddArray(as_vtk(cells, NUMBERS))
         _join_walls(whole, mesh)
@@ -419,9 +412,7 @@ def _part(
             ids = np.subtract(ids, low, dtype=np.int32, casting="unsafe")
         elif of_points:
             ids = np.searchsorted(own, ids)
-        array = vtkCellArray()
-        array.SetData(*(as_vtk(each.astype(np.int32, copy=False)) for each in (ends, ids)))
-        return array
+        return new_cells(*(each.astype(np.int32, copy=False) for each in (ids, ends)))
 
     part, points, kinds = vtkUnstructuredGrid(), vtkPoints(), as_vtk(types)
     dense = len(own) == high - low
@@ -442,12 +433,10 @@ def _are_twins(
 ) -> Bools:  # fmt: skip
     """Return which faces of solid cells have a twin of points from ``low`` to ``high``."""
     some = np.logical_and.reduceat((corners >= low) & (corners <= high), ends[:-1]) & solid
-    sizes, cells = np.diff(ends), vtkCellArray()
-    cells.SetData(
-        as_vtk(np.concatenate([[0], np.cumsum(sizes[some])])),
-        as_vtk(corners[np.repeat(some, sizes)]),
-    )
-    numbers, twins = mixed_corners(cells), np.zeros(len(sizes), dtype=np.bool_)
+    sizes = np.diff(ends)
+    some_ends = np.concatenate([[0], np.cumsum(sizes[some])])
+    numbers = mixed_corners(new_cells(corners[np.repeat(some, sizes)], some_ends))
+    twins = np.zeros(len(sizes), dtype=np.bool_)
     order, rows = np.argsort(numbers), np.flatnonzero(some)
     ordered = numbers[order]
     same = ordered[1:] == ordered[:-1]
@@ -563,9 +552,7 @@ def cropped(mesh: Foreign, extent: Sequence[int]) -> Foreign:
     )
     take: Foreign = next(extract for kind, extract in filters if isinstance(mesh, kind))()
     take.SetVOI(extent)
-    take.SetInputData(mesh)
-    take.Update()
-    return take.GetOutput()
+    return result(take, mesh)
 
 
 def rim(mesh: Grid) -> list[Raw]:

@@ -24,8 +24,6 @@ from vizlight.shading.results import arrays_of, digest, of_light, record_key, un
 from vizlight.vtk.cells import GHOSTS, as_vtk, check_whole
 from vizlight.vtk.parts import Part, part_of, uses_normals
 
-__all__ = ["Illuminate"]
-
 #: Options that are names of arrays: a pipeline has no others.
 _NAMES = ("tangents", "normals", "positions", "occlusion")
 #: Options that matter between points, give a mesh new ones, or need PyVista.
@@ -161,7 +159,7 @@ class Illuminate(VTKPythonAlgorithmBase):
         cue = None if scene is None else scene.depth_cue
         if cue is not None and (cue.front is None or cue.back is None):
             expected, remedy = "both ends in a pipeline", "pass DepthCue(front=, back=), distances"
-            raise ValueError(_check.message("depth_cue", expected, "none or one", remedy))
+            raise _check.value_error("depth_cue", expected, "none or one", remedy)
         self._change("_scene", scene)
 
     def SetScene(self, scene: Scene | None) -> None:
@@ -250,7 +248,7 @@ class Illuminate(VTKPythonAlgorithmBase):
             for name in arrays:
                 if data.GetPointData().HasArray(name):
                     expected, remedy = "one that the input has no array of", "pass another name="
-                    raise ValueError(_check.message("name", expected, repr(name), remedy))
+                    raise _check.value_error("name", expected, repr(name), remedy)
         # Points inside a volume are on no surface: they are no fault to warn of.
         inside = 0 if part.sided is None else int(part.sided.inside)
         if shading.invalid > inside:
@@ -274,7 +272,7 @@ class Illuminate(VTKPythonAlgorithmBase):
             # The whole surface tells the outer side, and a piece sees a part of it.
             if options.facing == "outward":
                 expected = "'eye' or 'as given' where the pipeline runs in several pieces"
-                raise ValueError(_check.message("facing", expected, "'outward'"))
+                raise _check.value_error("facing", expected, "'outward'")
             if options.facing == "auto":
                 # Toward the eye each point is turned by itself, wherever the cut lies.
                 options = dataclasses.replace(options, facing="eye")

@@ -54,10 +54,7 @@ def triangles(word: str) -> tuple[Array, Indices]:
             lines.InsertCellPoint(first + at)
     loops.SetPoints(points)
     loops.SetLines(lines)
-    filled = vtkContourTriangulator()
-    filled.SetInputData(loops)
-    filled.Update()
-    surface = filled.GetOutput()
+    surface = cells.result(vtkContourTriangulator(), loops)
     corners, _ = cells.connectivity(surface.GetPolys())
     places = cells.as_numpy(surface.GetPoints().GetData())[:, :2] if outlines else np.empty((0, 2))
     # Some points of an outline are corners of no triangle.

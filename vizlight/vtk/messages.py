@@ -16,8 +16,6 @@ from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutput
 
 from vizlight._types import Foreign
 
-__all__ = ["captured_errors", "first_line", "reason"]
-
 #: Where VTK says that an error or a warning arose, which stands before what it says.
 _ORIGIN = re.compile(r"\A[\w ]+: In .*, line \d+\s+(?:\S+ \(\w+\): )?")
 #: Where an object of VTK is in memory, and what it was asked for.

@@ -20,45 +20,12 @@ from vizlight.scene import View
 from vizlight.shading.inputs import ArraySource
 from vizlight.shading.options import Facing
 from vizlight.shading.results import digest
-from vizlight.vtk import hull
+from vizlight.vtk import cells as vtk_cells
+from vizlight.vtk import corners as vtk_corners
+from vizlight.vtk import hull, orientation
 from vizlight.vtk.arrays import vectors_of
-from vizlight.vtk.cells import (
-    as_numpy,
-    bare_faces,
-    connectivity,
-    faces_only,
-    finite_faces,
-    first_twins,
-    has_faces,
-    places,
-    triangles,
-    used,
-)
-from vizlight.vtk.corners import (
-    MANY_SHARP,
-    SHARP,
-    all_slivers,
-    common_normals,
-    corner_normals,
-    corners_by_size,
-    crease_share,
-    faces_of_three,
-    joined,
-    surface_normals,
-)
 from vizlight.vtk.hull import Grid, dimension, scattered, surface_of
 from vizlight.vtk.memory import once, recalled
-from vizlight.vtk.orientation import (
-    CORNERS,
-    MOST_LEAN,
-    PartShape,
-    Sums,
-    SurfaceShape,
-    lean_of,
-    normal_of_map,
-    sides_of,
-    toward_eye,
-)
 from vizlight.vtk.topology import (
     are_closed,
     edge_numbers,
@@ -201,7 +168,7 @@ class Sided:
         if self.lean is None:
             return None
         lean, number = self.lean[rows], np.asarray(self.open)
-        limited = np.clip(lean, -MOST_LEAN, MOST_LEAN)
+        limited = np.clip(lean, -orientation.MOST_LEAN, orientation.MOST_LEAN)
         number = number[rows] if number.ndim else number
         field = number > 1
         if facing != "auto" or not field.any():
@@ -237,7 +204,7 @@ def facing_of(normals: Array, points: Raw, view: View | None) -> Array:
     if view is None:
         shown = normals[:, 2]
     else:
-        toward, far = kernels.unit(toward_eye(view, points))
+        toward, far = kernels.unit(orientation.toward_eye(view, points))
         # The solid angle of a patch about the eye; divided twice, as the square of a tiny distance
         # would underflow.
         with np.errstate(all="ignore"):
@@ -269,7 +236,7 @@ class Turned:
 
 def _averted(vectors: Array, points: Raw, view: View, lean: Array | None) -> Bools:
     """Return the points with normals that point away from the eye, by more than they lean."""
-    toward = toward_eye(view, points)
+    toward = orientation.toward_eye(view, points)
     # Across the lean a normal of a coarse mesh points away while its faces are still seen: turning
     # it there would draw a dark rim.
     least = 0.0 if lean is None else -lean * np.sqrt(kernels.dot(toward, toward))
@@ -320,7 +287,7 @@ def sided_normals(
     if vote is None:
         inward, border = _of_given(surface, on_surface, of)
         # Given normals agree with each other by themselves, so that a block counts as one piece.
-        number = sides_of(vectors, block, border)
+        number = orientation.sides_of(vectors, block, border)
     else:
         inward, number = vote.sign[:1] < 0, vote.number
     if inward.any():
@@ -347,13 +314,13 @@ def _of_given(surface: vtkPolyData, normals: Array, block: Indices | None) -> tu
         closed &= alike | ~_inside_out(surface, of, count)
     if not closed.any():
         return closed, ~closed
-    ids = np.flatnonzero(used(surface))
-    return closed & _inward(places(surface)[ids], normals[ids], of[ids], count), ~closed
+    ids = np.flatnonzero(vtk_cells.used(surface))
+    return closed & _inward(vtk_cells.places(surface)[ids], normals[ids], of[ids], count), ~closed
 
 
 def lean_of_given(surface: vtkPolyData, normals: Array) -> Array:
     """Return :func:`.orientation.lean_of`, computed once for a surface and its normals."""
-    return once(surface, f"lean {digest(normals)}", lambda: lean_of(surface, normals))
+    return once(surface, f"lean {digest(normals)}", lambda: orientation.lean_of(surface, normals))
 
 
 def are_of_faces(surface: vtkPolyData, normals: Array) -> bool:
@@ -361,11 +328,13 @@ def are_of_faces(surface: vtkPolyData, normals: Array) -> bool:
 
     Points that are split at sharp edges would then have normals near those that they have.
     """
-    if surface.GetNumberOfStrips() or surface.GetPolys().IsHomogeneous() != CORNERS:
+    if surface.GetNumberOfStrips() or surface.GetPolys().IsHomogeneous() != orientation.CORNERS:
         return False
-    apart = lean_of_given(surface, normals) > np.sin(np.radians(SHARP / 2))
+    apart = lean_of_given(surface, normals) > np.sin(np.radians(vtk_corners.SHARP / 2))
     # A point is split into at most as many as it has corners.
-    return int(np.count_nonzero(apart[triangles(surface)])) <= MANY_SHARP * len(normals)
+    return int(
+        np.count_nonzero(apart[vtk_cells.triangles(surface)])
+    ) <= vtk_corners.MANY_SHARP * len(normals)
 
 
 def _inward(points: Array, normals: Array, block: Indices, count: int) -> Bools:
@@ -396,17 +365,17 @@ def _sided_grid(mesh: Grid, vectors: Array) -> Sided:
     # Edges that are not on the border of a sheet have two faces.
     edges = [edge_numbers(x[:-1], x[1:]) for x in map(place_numbers, hull.rim(mesh))]
     if any(np.bitwise_xor.reduce(np.concatenate([[np.uint64(0)], *edges]), keepdims=True)):
-        side = int(sides_of(vectors, None, np.ones(1, dtype=np.bool_))[0])
+        side = int(orientation.sides_of(vectors, None, np.ones(1, dtype=np.bool_))[0])
         if side < 2:
             return Sided(vectors, open=side)
         lean = np.zeros(len(vectors), dtype=np.float32)
         for part in hull.parts(mesh):
             on = part.side == 0
-            lean[part.origin[on]] = lean_of(part.surface, vectors[part.origin])[on]
+            lean[part.origin[on]] = orientation.lean_of(part.surface, vectors[part.origin])[on]
         return Sided(vectors, lean, open=side)
     points, normals = [], []
     for part in hull.parts(mesh):
-        where = places(part.surface)
+        where = vtk_cells.places(part.surface)
         rows = vectors[part.origin]
         valid = np.isfinite(where).all(axis=1) & np.isfinite(rows).all(axis=1) & (part.side == 0)
         where, rows = where[valid], rows[valid]
@@ -429,11 +398,11 @@ def given_normals(mesh: Dataset, value: object, n: int) -> Array | None:
     if n != 3:
         expected = f"a point array of {n} components for {n}-space"
         remedy = "without one pass tangents=, conditioned by the name of the surface's tangents"
-        raise ValueError(_check.message("normals", expected, None, remedy))
+        raise _check.value_error("normals", expected, None, remedy)
     carried = mesh.GetPointData().GetNormals()
     if carried is None:
         return None
-    vectors = vectors_of(mesh, "normals", carried.GetName() or as_numpy(carried), 3)
+    vectors = vectors_of(mesh, "normals", carried.GetName() or vtk_cells.as_numpy(carried), 3)
     longest = np.abs(vectors).max(axis=1, initial=0)
     valid = (longest > 0) & (longest < np.inf)
     if valid.all():
@@ -552,7 +521,7 @@ def _computed(
     if wound is None:
         expected, got = "a surface, whose normals are lit", f"a {type(mesh).__name__} without faces"
         remedy = "name its tangent vectors by tangents= or its normals by normals="
-        raise ValueError(_check.message("mesh", expected, got, remedy))
+        raise _check.value_error("mesh", expected, got, remedy)
     shape, vectors, first, origin = wound
     lean, border = None, shape.open | shape.inside_out
     side: Indices = border.astype(np.intp)
@@ -566,10 +535,12 @@ def _computed(
             shape.orient(vectors, sums, leaning, view)
         if sides:
             lean = leaning if first is None else leaning[first]
-            side = sides_of(vectors, shape.piece, border) if vote is None else vote.number
+            side = (
+                orientation.sides_of(vectors, shape.piece, border) if vote is None else vote.number
+            )
             # What has no two sides is no height field, even where its normals fit in a half space.
             side = np.where(shape.inside_out, 1, side)
-            share = crease_share(shape.edges)
+            share = vtk_corners.crease_share(shape.edges)
             sharp = float(share) if block is None else share
     number = side[shape.piece]
     if origin is not None:
@@ -591,7 +562,7 @@ def wound_normals(
     as_wound: bool = False,
     side: NDArray[np.int8] | None = None,
     outer: Outer | None = None,
-) -> tuple[SurfaceShape, Array, Indices | None, Indices | None] | None:
+) -> tuple[orientation.SurfaceShape, Array, Indices | None, Indices | None] | None:
     """Return the outer surface of a mesh and the normals of its points, None where it has none.
 
     The normals agree with each other on each piece, and are zero where no face is. After them come
@@ -606,17 +577,19 @@ def wound_normals(
         return None
     shape, surface, origin = outer
     wound = _wound(surface, shape, as_wound=as_wound)
-    vectors = surface_normals(wound)
+    vectors = vtk_corners.surface_normals(wound)
     if shape.seam.any() and not as_wound:
         _mend_seams(wound, shape, vectors)
     # Isosurfaces have points a rounding apart; each would have the normal of its own sliver.
     slivers = shape.slivers
     if not shape.triangular:
-        slivers = all_slivers(shape.points, faces_of_three(surface))
-    first = joined(shape.points, slivers)
+        slivers = vtk_corners.all_slivers(shape.points, vtk_corners.faces_of_three(surface))
+    first = vtk_corners.joined(shape.points, slivers)
     if first is not None:
-        least = float(np.cos(np.radians(SHARP)))
-        vectors, first = common_normals(shape.points, shape.triangles, vectors, first, least)
+        least = float(np.cos(np.radians(vtk_corners.SHARP)))
+        vectors, first = vtk_corners.common_normals(
+            shape.points, shape.triangles, vectors, first, least
+        )
         # The faces around joined points meet at the first of them, where the survey then looks at
         # all of them for one lean.
         shape.join(first)
@@ -625,10 +598,10 @@ def wound_normals(
 
 def _of_map(mesh: Dataset) -> Sided | None:
     """Return the normals of a map, one height field without an edge; None for another mesh."""
-    if not isinstance(mesh, vtkPolyData) or (normal := normal_of_map(mesh)) is None:
+    if not isinstance(mesh, vtkPolyData) or (normal := orientation.normal_of_map(mesh)) is None:
         return None
     # A point without a face has no normal.
-    vectors: Array = np.where(used(mesh)[:, np.newaxis], normal, 0.0).astype(np.float32)
+    vectors: Array = np.where(vtk_cells.used(mesh)[:, np.newaxis], normal, 0.0).astype(np.float32)
     lean = np.zeros(len(vectors), dtype=np.float32)
     return Sided(vectors, lean, np.full(len(vectors), 2), computed=True)
 
@@ -645,7 +618,7 @@ class Outer(NamedTuple):
         Point of the mesh that each point of the surface is, None for a surface.
     """
 
-    shape: SurfaceShape
+    shape: orientation.SurfaceShape
     surface: vtkPolyData
     origin: Indices | None
 
@@ -656,13 +629,13 @@ def outer_shape(
     """Return the outer surface of a mesh, None where it has none; see :func:`wound_normals`."""
     if side is None:
         surface, origin = surface_of(mesh)
-        if not has_faces(surface):
+        if not vtk_cells.has_faces(surface):
             return None
         block = block if block is None or origin is None else block[origin]
         # Faces that are there twice are rare, and the edges tell that there are none.
-        bare = finite_faces(bare_faces(surface))
-        shape = SurfaceShape(bare, block=block)
-        if not shape.doubtful or first_twins(surface.GetPolys()) is None:
+        bare = vtk_cells.finite_faces(vtk_cells.bare_faces(surface))
+        shape = orientation.SurfaceShape(bare, block=block)
+        if not shape.doubtful or vtk_cells.first_twins(surface.GetPolys()) is None:
             return Outer(shape, bare, origin)
     skin, origin = _skin(mesh)
     if skin is None:
@@ -672,9 +645,9 @@ def outer_shape(
         side = side[origin]
         if dimension(mesh) == 3:
             # Where the part is cut from the others faces arise that join what is apart.
-            around = finite_faces(skin, side == 0)
-            skin = around if has_faces(around) else skin
-    return Outer(SurfaceShape(skin, side, block), skin, origin)
+            around = vtk_cells.finite_faces(skin, side == 0)
+            skin = around if vtk_cells.has_faces(around) else skin
+    return Outer(orientation.SurfaceShape(skin, side, block), skin, origin)
 
 
 def creases(mesh: vtkPolyData, *, has_normals: bool = False) -> float:
@@ -687,22 +660,22 @@ def creases(mesh: vtkPolyData, *, has_normals: bool = False) -> float:
 
 
 def _creases(mesh: vtkPolyData, has_normals: bool) -> float:
-    if normal_of_map(mesh) is not None:
+    if orientation.normal_of_map(mesh) is not None:
         return 0.0
     outer = outer_shape(mesh)
-    share = 0.0 if outer is None else float(crease_share(outer.shape.edges))
+    share = 0.0 if outer is None else float(vtk_corners.crease_share(outer.shape.edges))
     if not share and not has_normals:
         once(mesh, "normals", lambda: _frozen(_computed(mesh, outer=outer)))
     return share
 
 
-def _mend_seams(surface: vtkPolyData, shape: SurfaceShape, vectors: Array) -> None:
+def _mend_seams(surface: vtkPolyData, shape: orientation.SurfaceShape, vectors: Array) -> None:
     """Make normals anew where faces around a point have no common side, as on a Möbius strip.
 
     The others take the side of the first.
     """
     fans = []
-    for rows in corners_by_size(surface):
+    for rows in vtk_corners.corners_by_size(surface):
         # Each corner of each face with the one ahead of it and the one behind it.
         corners = np.stack([np.roll(rows, -i, axis=1).ravel() for i in (0, 1, -1)])
         fans.append(corners[:, shape.seam[corners[0]]])
@@ -716,7 +689,7 @@ def _mend_seams(surface: vtkPolyData, shape: SurfaceShape, vectors: Array) -> No
     # Each corner becomes a triangle with two ends of its own, whose normals nobody asks for.
     apart = np.arange(fan[1:].size).reshape(2, -1) + len(first)
     points = shape.points[np.concatenate([fan[0, first], *fan[1:]])]
-    mended = corner_normals(points, [np.stack([number, *apart], axis=1)])
+    mended = vtk_corners.corner_normals(points, [np.stack([number, *apart], axis=1)])
     vectors[fan[0, first]] = mended[: len(first)]
 
 
@@ -735,16 +708,17 @@ def _of_cloud(mesh: Dataset, view: View | None) -> Sided:
     from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
 
     estimate = vtkPCANormalEstimation()
-    estimate.SetInputData(mesh)
     estimate.SetSampleSize(NEIGHBOURS)
     # A plane has no side: each takes the side of a neighbour which was turned before.
     estimate.SetNormalOrientationToGraphTraversal()
-    estimate.Update()
-    unit = np.array(as_numpy(estimate.GetOutput().GetPointData().GetNormals()))
+    normals = vtk_cells.result(estimate, mesh).GetPointData().GetNormals()
+    unit = np.array(vtk_cells.as_numpy(normals))
     unit[~np.isfinite(unit).all(axis=1)] = 0
     # Where an eye is known it decides, point by point: no side of a scan is the outer one for sure.
     if view is not None:
-        unit = np.where(_averted(unit, places(mesh), view, None)[:, np.newaxis], -unit, unit)
+        unit = np.where(
+            _averted(unit, vtk_cells.places(mesh), view, None)[:, np.newaxis], -unit, unit
+        )
     return Sided(unit, open=True, computed=True)
 
 
@@ -758,7 +732,7 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     # A first walk for centroid and size of the whole, about which the second one takes its sums; to
     # hold all parts would take the memory that is saved by them.
     for part in hull.parts(mesh):
-        points = places(part.surface)[part.side == 0]
+        points = vtk_cells.places(part.surface)[part.side == 0]
         on_surface += len(points)
         points = points[np.all(np.isfinite(points), axis=1)].astype(np.float64)
         low = np.minimum(low, points.min(axis=0, initial=np.inf))
@@ -773,8 +747,8 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
     sums, counts = [], np.zeros(4, dtype=np.intp)
     for part in hull.parts(mesh):
         surface, inner = part.surface, part.side == 0
-        normals = surface_normals(surface)
-        shape = PartShape(surface, part.side, middle, scale or 1.0)
+        normals = vtk_corners.surface_normals(surface)
+        shape = orientation.PartShape(surface, part.side, middle, scale or 1.0)
         # Normals in the added layers lack the faces beyond; the next part has these points as its
         # own.
         vectors[part.origin[inner]] = normals[inner]
@@ -786,34 +760,31 @@ def _of_grid(mesh: Grid, view: View | None, *, as_wound: bool, sides: bool) -> S
         if len(single):
             single = np.setdiff1d(single, inner_edges(shape.points, shape.triangles, ends))
     border = np.array([len(single) > 0])
-    whole = Sums(*(np.sum(each, axis=0) for each in zip(*sums, strict=True)))
+    whole = orientation.Sums(*(np.sum(each, axis=0) for each in zip(*sums, strict=True)))
     if not as_wound and whole.turned(border)[0]:
         vectors *= -1
         lean *= -1
     side: Indices = border.astype(np.intp)
     if sides:
-        side = sides_of(vectors, None, border)
+        side = orientation.sides_of(vectors, None, border)
     return Sided(
         vectors,
         lean if sides else None,
         int(side[0]),
-        float(crease_share(counts)) if sides else 0.0,
+        float(vtk_corners.crease_share(counts)) if sides else 0.0,
         computed=True,
         inside=count - on_surface,
     )
 
 
-def _wound(surface: vtkPolyData, shape: SurfaceShape, *, as_wound: bool) -> vtkPolyData:
+def _wound(surface: vtkPolyData, shape: orientation.SurfaceShape, *, as_wound: bool) -> vtkPolyData:
     """Return a surface with faces wound alike, by VTK where they are not.
 
     ``shape`` takes the faces as VTK winds them.
     """
     if as_wound or shape.alike:
         return surface
-    rewind = _orienter()
-    rewind.SetInputData(surface)
-    rewind.Update()
-    output: vtkPolyData = rewind.GetOutput()
+    output: vtkPolyData = vtk_cells.result(_orienter(), surface)
     if not _same_cells(surface, output):
         shape.rewind(output)
     return output
@@ -837,7 +808,7 @@ def _orienter() -> Foreign:
 
 def _inside_out(surface: vtkPolyData, block: Indices, count: int) -> Bools:
     """Return which blocks have a piece without an outer side, such as a Klein bottle."""
-    shape = SurfaceShape(surface, block=block)
+    shape = orientation.SurfaceShape(surface, block=block)
     _wound(surface, shape, as_wound=False)
     return np.bincount(block, shape.inside_out[shape.piece], count) > 0
 
@@ -848,18 +819,22 @@ def piece_numbers(mesh: Dataset) -> Indices:
     surface, origin = _skin(mesh)
     if surface is None:
         return np.zeros(count, dtype=np.intp)
-    piece = topology(triangles(surface), places(surface)).piece
+    piece = topology(vtk_cells.triangles(surface), vtk_cells.places(surface)).piece
     return piece if origin is None else scattered(piece, origin, count)
 
 
 def _skin(mesh: Dataset) -> tuple[vtkPolyData | None, Indices | None]:
     """Return the faces of the outer surface and its points' indices, None where it has none."""
     surface, origin = surface_of(mesh)
-    return (finite_faces(faces_only(surface)) if has_faces(surface) else None), origin
+    return (
+        vtk_cells.finite_faces(vtk_cells.faces_only(surface))
+        if vtk_cells.has_faces(surface)
+        else None
+    ), origin
 
 
 def _same_cells(this: vtkPolyData, other: vtkPolyData) -> bool:
     """Return whether two surfaces of polygons have equal cells."""
     strips = this.GetNumberOfStrips() or other.GetNumberOfStrips()
-    cells = [connectivity(surface.GetPolys()) for surface in (this, other)]
+    cells = [vtk_cells.connectivity(surface.GetPolys()) for surface in (this, other)]
     return not strips and all(np.array_equal(a, b) for a, b in zip(*cells, strict=True))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from vizlight import _pool
 from vizlight._types import Array, Bools, Indices, Raw, Slice
@@ -16,9 +17,6 @@ from vizlight.scene import View
 from vizlight.vtk.cells import connectivity, faces, finite_points, places, triangles
 from vizlight.vtk.corners import SHARP, Slivers, slivers_of
 from vizlight.vtk.topology import BLOCK, SortedEdges, ends_of, sorted_edges, topology
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 #: A piece counts as nearly closed if the sum of the area vectors of its faces is shorter than this
 #: share of its area.

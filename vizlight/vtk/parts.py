@@ -231,7 +231,7 @@ def _check_options(tangents: Array | None, n: int, options: LightOptions) -> Non
     if tangents is None:
         if options.conditioned:
             remedy = "leave it out: a surface without tangents has its attached shadow in any case"
-            raise ValueError(_check.message("conditioned", "tangents to condition", None, remedy))
+            raise _check.value_error("conditioned", "tangents to condition", None, remedy)
     elif not options.conditioned or isinstance(options.conditioned, str):
         _refuse_sides(options)
 
@@ -244,4 +244,4 @@ def _refuse_sides(options: LightOptions) -> None:
         if not (value is None or value is False or (isinstance(value, str) and value == "auto")):
             remedy = "pass conditioned=True, or leave one of them out"
             expected = f"no {name} beside tangents, which have no sides"
-            raise ValueError(_check.message(name, expected, "both", remedy))
+            raise _check.value_error(name, expected, "both", remedy)

@@ -11,7 +11,7 @@ from vtkmodules.vtkFiltersCore import vtkStripper
 from vizlight._types import Array, Bools, Dataset, Indices
 from vizlight.geometry.lines.curves import polyline_tangents
 from vizlight.vtk import hull
-from vizlight.vtk.cells import as_vtk, connectivity, faces, places
+from vizlight.vtk.cells import as_vtk, connectivity, faces, new_cells, places, result
 from vizlight.vtk.memory import once
 
 #: VTK's types of cells: lines, polylines, quadratic edges, cubic lines, and curves of any degree
@@ -110,8 +110,7 @@ def _joined(mesh: vtkPolyData) -> tuple[Array, Indices, Indices]:
     if (empty := pairs[ids[offsets[pairs]] == ids[offsets[pairs] + 1]]).size:
         ids = np.delete(ids, np.add.outer(offsets[empty], [0, 1]))
         offsets = np.concatenate([[0], np.cumsum(np.delete(sizes, empty))])
-        lines = vtkCellArray()
-        lines.SetData(as_vtk(offsets), as_vtk(ids))
+        lines = new_cells(ids, offsets)
     # Segments that have an end in common.
     if np.any(np.diff(offsets) == 2) and np.bincount(ids).max() > 1:
         # Lines alone: the filter would also make strips of triangles.
@@ -121,9 +120,7 @@ def _joined(mesh: vtkPolyData) -> tuple[Array, Indices, Indices]:
         join = vtkStripper()
         join.JoinContiguousSegmentsOn()
         join.SetMaximumLength(mesh.GetNumberOfPoints() + 1)
-        join.SetInputData(bare)
-        join.Update()
-        ids, offsets = connectivity(join.GetOutput().GetLines())
+        ids, offsets = connectivity(result(join, bare).GetLines())
     return places(mesh), ids, offsets
 
 

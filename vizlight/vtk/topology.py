@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from vizlight import _pool
 from vizlight._types import Bools, Indices, Raw, Slice
 from vizlight.geometry.lines.simplices import EDGES, components
 from vizlight.vtk.cells import firsts, mixed, places, triangles
-
-if TYPE_CHECKING:
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
-
 
 #: Largest number of parts of edges that are sorted.
 PARTS = 16

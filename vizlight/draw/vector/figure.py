@@ -26,8 +26,6 @@ from vizlight.geometry.contours.levels import levels
 from vizlight.geometry.contours.palette import FEWER, nearest_colors, palette_of
 from vizlight.geometry.contours.steady import steadied
 
-__all__ = ["save_graphic"]
-
 #: Largest file in bytes that is made where no error is asked for.
 LARGEST = 500_000
 #: Errors in 1/255: the finest and the coarsest of which one is chosen, and the largest that is not

@@ -18,8 +18,6 @@ from vizlight._types import Array, Color
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Fill", "Item", "Picture", "Polyline", "Sheet", "Words", "figure_of", "pdf_of", "svg_of"]
-
 #: Steps of a coordinate in a pixel.
 STEPS = 10
 #: Families of letters that look like those of VTK.

@@ -20,8 +20,6 @@ from vizlight.geometry.contours.palette import nearest_colors
 from vizlight.geometry.contours.rings import SEEN, simplified
 from vizlight.vtk.polylines import cells_of, has_lines_only
 
-__all__ = ["Course", "Lines", "course_of", "lines_of", "strokes_of"]
-
 #: Distance of a line behind what is drawn, in its widths, up to which it is what is drawn.
 BEHIND = 1.5
 #: Ratio of two widths that are drawn as one, and difference from the ground that is rounding.
@@ -142,8 +140,7 @@ def _unlit_colors(actor: vtkActor, mesh: pv.PolyData, live: Live | None) -> Arra
     if not is_plain or (mapper.GetScalarVisibility() and (values is None or values.ndim > 1)):
         return None
     if not mapper.GetScalarVisibility():
-        colors: Array = 255 * np.tile(actor.GetProperty().GetColor(), (mesh.n_points, 1))
-        return colors
+        return 255 * np.tile(actor.GetProperty().GetColor(), (mesh.n_points, 1))
     plain = pv.convert_array(np.ascontiguousarray(values))
     table = pv.convert_array(mapper.GetLookupTable().MapScalars(plain, 1, -1))
     return np.asarray(table[:, :3], dtype=np.float64)
@@ -313,8 +310,7 @@ def _read(picture: Array, place: Array) -> Array:
     """Return the samples of a picture at places, those at the border for places beyond."""
     rows, columns = picture.shape[:2]
     at = np.floor(place).astype(np.intp)
-    values: Array = picture[np.clip(at[:, 1], 0, rows - 1), np.clip(at[:, 0], 0, columns - 1)]
-    return values
+    return picture[np.clip(at[:, 1], 0, rows - 1), np.clip(at[:, 0], 0, columns - 1)]
 
 
 def strokes_of(courses: Sequence[Course], error: float) -> Iterator[Polyline | Fill]:

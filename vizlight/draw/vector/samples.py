@@ -21,8 +21,6 @@ from vizlight.draw.live import items
 from vizlight.draw.strokes import has_pass
 from vizlight.vtk.cells import as_numpy
 
-__all__ = ["Samples", "actors_of", "enlarged", "samples_of"]
-
 #: Mark of VTK's fragment shaders after which the colour is final, and the uniform with the channel.
 LAST, CHANNEL = "//VTK::Picking::Impl", "vizChannel"
 #: Statement that writes a channel from 0 to 1 as 24 bits; below 0 there is none to write.
@@ -178,5 +176,4 @@ def _bytes(plotter: pv.BasePlotter) -> Array:
     width, height = window.GetSize()
     pixels = vtkUnsignedCharArray()
     window.GetPixelData(0, 0, width - 1, height - 1, 0, pixels, 0)
-    picture: Array = as_numpy(pixels).reshape(height, width, 3)[::-1]
-    return picture
+    return as_numpy(pixels).reshape(height, width, 3)[::-1]

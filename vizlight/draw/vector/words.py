@@ -13,8 +13,6 @@ from vizlight._types import Array, Color
 from vizlight.draw.live import items
 from vizlight.draw.vector.files import ASCENT, DESCENT, LINE, Fill, Item, Words
 
-__all__ = ["words_of"]
-
 #: Shares of the width and of the height of a picture at which VTK writes texts, in its order.
 CORNERS = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (0.5, 0.0), (1.0, 0.5), (0.0, 0.5),
            (0.5, 1.0))  # fmt: skip
@@ -168,8 +166,7 @@ def _corners(actor: vtkCornerAnnotation, plotter: pv.BasePlotter) -> Iterator[Wo
 
 def _picture(plotter: pv.BasePlotter) -> Array:
     plotter.render()
-    picture: Array = np.array(plotter.screenshot(return_img=True))
-    return picture
+    return np.array(plotter.screenshot(return_img=True))
 
 
 def _fitted(lines: list[str], changed: Array, across: float, style: vtkTextProperty) -> Words:

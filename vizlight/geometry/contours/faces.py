@@ -19,8 +19,6 @@ from vizlight.geometry.contours import rings
 from vizlight.geometry.contours.palette import JUMP, Palette
 from vizlight.geometry.contours.steady import slopes
 
-__all__ = ["Face", "faces"]
-
 #: Samples around those of the picture.
 PAD = 2
 #: Reach of a face outward beneath a later one, in pixels, tried from the largest, and the parts of

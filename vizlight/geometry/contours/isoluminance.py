@@ -149,7 +149,7 @@ def virtual_light(center: VectorLike, /, *, light: object, eye: object) -> Array
     # Halfway between opposite directions there is no direction.
     if math.hypot(*total) < 1e-12:
         expected, remedy = "an eye that is not opposite the light", "move the eye or the light"
-        raise ValueError(_check.message("eye", expected, _check.describe(eye), remedy))
+        raise _check.value_error("eye", expected, _check.describe(eye), remedy)
     return np.asarray(total / math.hypot(*total))
 
 

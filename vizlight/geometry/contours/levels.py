@@ -18,8 +18,6 @@ from vizlight.geometry.contours.faces import Face
 from vizlight.geometry.contours.palette import JUMP, Palette
 from vizlight.geometry.contours.steady import slopes
 
-__all__ = ["levels"]
-
 #: Distance in pixels to which areas reach beneath the background, and share of the distance from
 #: it by which their borders there may lie elsewhere.
 BENEATH, FREE = 6, 0.6

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from vizlight._types import Array, Bools, Indices
 
-__all__ = ["FEWER", "JUMP", "Palette", "nearest_colors", "palette_of"]
-
 #: Share of the samples above which one exact colour is its own face.
 FLAT = 2e-3
 #: Most colours of this kind, and the step by which samples are looked through for them.

@@ -11,11 +11,6 @@ from numpy.typing import NDArray
 
 from vizlight._types import Array, Bools, Indices
 
-__all__ = [
-    "SEEN", "STAIR", "Rings", "area_of", "beneath", "corners_of", "shifted", "simplified",
-    "squares", "traced", "vertices", "walked",
-]  # fmt: skip
-
 #: Largest distance in pixels of a border from what is written of it where it is seen; and in
 #: samples, between two surfaces, where a straight border is a stair of samples.
 SEEN, STAIR = 0.1, 0.6

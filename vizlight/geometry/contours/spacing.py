@@ -61,23 +61,23 @@ def check(levels: object) -> None:
     """
     expected = "a count (int), luminance values (a sequence) or an allowed error (float)"
     if isinstance(levels, bool | str) or levels is None:
-        raise TypeError(_check.message("levels", expected, _check.describe(levels)))
+        raise _check.type_error("levels", expected, levels)
     error = allowed(levels)
     if isinstance(levels, numbers.Integral):
         if not 1 <= int(levels) <= MOST:
-            raise ValueError(_check.message("levels", f"a count from 1 to {MOST}", levels))
+            raise _check.value_error("levels", f"a count from 1 to {MOST}", levels)
     elif error is not None:
         if error >= 2 and error.is_integer():
             remedy = f"write {int(error)} for a count"
-            raise ValueError(_check.message("levels", expected, repr(levels), remedy))
+            raise _check.value_error("levels", expected, repr(levels), remedy)
         if not (error > 0 and math.isfinite(error)):
             expected = "an allowed error above 0"
-            raise ValueError(_check.message("levels", expected, _check.describe(levels)))
+            raise _check.value_error("levels", expected, _check.describe(levels))
     else:
         values = _check.floats("levels", levels)
         if values.ndim != 1 or not np.all(np.isfinite(values)):
             expected = "finite values in one row"
-            raise ValueError(_check.message("levels", expected, _check.describe(levels)))
+            raise _check.value_error("levels", expected, _check.describe(levels))
 
 
 def allowed(levels: object) -> float | None:
@@ -131,7 +131,7 @@ def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) ->
         ratio = span / (2 * error)
         if ratio > MOST * (1 if exact else 1 - CHORDS):
             expected = f"an error that at most {MOST} steps keep"
-            raise ValueError(_check.message("levels", expected, repr(levels)))
+            raise _check.value_error("levels", expected, repr(levels))
         edges = np.linspace(low, high, _count(ratio, exact) + 1)
     else:
         contours = np.unique(np.asarray(levels, dtype=np.float64))

@@ -7,8 +7,6 @@ import scipy
 
 from vizlight._types import Array, Bools, Slice
 
-__all__ = ["slopes", "steadied"]
-
 #: Rounds in which pixels become the mean of their neighbours.
 ROUNDS = 24
 #: Difference of neighbouring pixels above which they are of two surfaces, in tolerances.

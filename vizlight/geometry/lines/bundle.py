@@ -28,8 +28,6 @@ from vizlight import _pool
 from vizlight._types import Array, Bools, Indices, Slice, VectorLike
 from vizlight.geometry import axial
 
-__all__ = ["Medium", "Targets", "directions", "medium"]
-
 #: Number of places that NumPy spreads at once.
 AT_ONCE = 1 << 19
 #: Place in a voxel of a line through the origin: there its hat functions have their mean over all
@@ -339,14 +337,12 @@ def _halves() -> Array:
     angles = np.linspace(-np.pi / 2, np.pi / 2, ANGLES)
     values = _spline(v)[:, np.newaxis] * _passed(v[:, np.newaxis] * np.tan(angles))
     steps = (values[1:] + values[:-1]) / 2 * (v[1] - v[0])
-    table: Array = np.concatenate([np.zeros((1, ANGLES)), np.cumsum(steps, axis=0)])[::fine]
-    return table
+    return np.concatenate([np.zeros((1, ANGLES)), np.cumsum(steps, axis=0)])[::fine]
 
 
 def _spline(v: Array) -> Array:
     """Return the cubic B-spline at distances of 0 or more."""
-    result: Array = np.where(v < 1, 2 / 3 - v * v + v**3 / 2, np.maximum(2 - v, 0) ** 3 / 6)
-    return result
+    return np.where(v < 1, 2 / 3 - v * v + v**3 / 2, np.maximum(2 - v, 0) ** 3 / 6)
 
 
 def _passed(along: Array) -> Array:
@@ -355,8 +351,7 @@ def _passed(along: Array) -> Array:
     s = np.minimum(np.abs(along), 2)
     # From 0 on, which is 1/2 at 2.
     inner, outer = 2 * s / 3 - s**3 / 3 + s**4 / 8, 1 / 2 - (2 - s) ** 4 / 24
-    result: Array = 0.5 + np.sign(along) * np.where(s < 1, inner, outer)
-    return result
+    return 0.5 + np.sign(along) * np.where(s < 1, inner, outer)
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ def polyline_tangents(
     """
     positions = _check.vectors("points", points)
     if positions.ndim != 2:
-        raise ValueError(_check.message("points", "shape (N, n)", positions))
+        raise _check.value_error("points", "shape (N, n)", positions)
     count = len(positions)
     ids = np.arange(count)
     if connectivity is not None:
@@ -67,7 +67,7 @@ def polyline_tangents(
     if offsets is not None:
         starts = _check.indices("offsets", offsets, len(ids) + 1)
     if len(starts) == 0 or starts[0] != 0 or starts[-1] != len(ids) or np.any(np.diff(starts) < 0):
-        raise ValueError(_check.message("offsets", f"rising indices from 0 to {len(ids)}", starts))
+        raise _check.value_error("offsets", f"rising indices from 0 to {len(ids)}", starts)
     lines = _Lines(positions, ids, starts)
     tangents = np.zeros_like(positions)
     with np.errstate(all="ignore"):

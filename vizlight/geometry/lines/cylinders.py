@@ -14,8 +14,6 @@ from vizlight._types import Array, Bools, Indices, VectorLike
 from vizlight.geometry import axial
 from vizlight.geometry.lines.bundle import Medium, Targets
 
-__all__ = ["Missed", "free_shares", "missed"]
-
 #: Number of points from which rays are sent to a light.
 SAMPLE = 512
 #: Starts of rays across a line, in its diameters from its axis.

@@ -71,7 +71,7 @@ def seeds(
     order, total = laid(vertices, triangles)
     if count and not (len(total) and total[-1] > 0):
         expected = "triangles with an area above 0 between finite points"
-        raise ValueError(_check.message("faces", expected, "none"))
+        raise _check.value_error("faces", expected, "none")
     face, weights = np.empty(count, np.intp), np.empty((count, 3), np.float32)
     for start in range(0, count, SEED_BLOCK):
         block = slice(start, start + SEED_BLOCK)

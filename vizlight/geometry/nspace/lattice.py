@@ -32,7 +32,7 @@ def resolution(value: int | Sequence[int], k: int, closed: Sequence[bool]) -> tu
     entries: Foreign = value
     several = isinstance(entries, list | tuple) or np.ndim(entries) == 1
     if several and len(entries) != k:
-        raise ValueError(_check.message("resolution", f"1 or {k} integers", len(entries)))
+        raise _check.value_error("resolution", f"1 or {k} integers", len(entries))
     sizes = tuple(entries) if several else (entries,) * k
     counts = tuple(
         _check.integer("resolution", size, low=3 if wraps else 2)

@@ -76,11 +76,11 @@ class Manifold:
     def __post_init__(self) -> None:
         points, frame = (_check.floats(name, getattr(self, name)) for name in ("points", "frame"))
         if points.ndim != 2 or points.shape[1] < 2:
-            raise ValueError(_check.message("points", "shape (N, n), n of 2 or more", points))
+            raise _check.value_error("points", "shape (N, n), n of 2 or more", points)
         count, n = points.shape
         if frame.ndim != 3 or frame.shape[::2] != (count, n) or not 0 < frame.shape[1] < n:
             expected = f"shape ({count}, k, {n}) with k < {n}, for points of shape ({count}, {n})"
-            raise ValueError(_check.message("frame", expected, frame))
+            raise _check.value_error("frame", expected, frame)
         cells = _check.cells("cells", self.cells, count, (2 ** frame.shape[1],))
         _check.set_fields(self, points=points, frame=frame, cells=cells)
 
@@ -201,28 +201,28 @@ def parametric(
         if closed is not None and wraps[axis] and not _is_closed(sample, ends, axis, eps):
             expected = f"a function that returns to its start in direction {axis}"
             remedy = "pass closed=False for an open direction"
-            raise ValueError(_check.message("closed", expected, "one that does not", remedy))
+            raise _check.value_error("closed", expected, "one that does not", remedy)
     return manifold(points, rows, lattice.cells(shape, wraps))
 
 
 def _domain(domain: object, closed: object) -> tuple[Array, tuple[bool, ...] | None]:
     ends = _check.floats("domain", domain).astype(np.float64)
     if ends.ndim != 2 or ends.shape[1] != 2 or not 1 <= len(ends) <= 3:
-        raise ValueError(_check.message("domain", "1 to 3 pairs (low, high)", ends))
+        raise _check.value_error("domain", "1 to 3 pairs (low, high)", ends)
     sizes = ends[:, 1] - ends[:, 0]
     if not np.all(np.isfinite(ends) & (sizes[:, np.newaxis] > 0)):
-        raise ValueError(_check.message("domain", "finite pairs with low < high", ends.tolist()))
+        raise _check.value_error("domain", "finite pairs with low < high", ends.tolist())
     if closed is None:
         return ends, None
     expected = f"a bool or {len(ends)} of them"
     try:
         wraps = np.asarray(closed)
     except ValueError as error:
-        raise TypeError(_check.message("closed", expected, _check.describe(closed))) from error
+        raise _check.type_error("closed", expected, closed) from error
     if wraps.dtype.kind not in "biu" or not np.isin(wraps, (0, 1)).all():
-        raise TypeError(_check.message("closed", expected, _check.describe(closed)))
+        raise _check.type_error("closed", expected, closed)
     if wraps.shape not in ((), (len(ends),)):
-        raise ValueError(_check.message("closed", expected, _check.describe(closed)))
+        raise _check.value_error("closed", expected, _check.describe(closed))
     return ends, tuple(bool(wrap) for wrap in np.broadcast_to(wraps, len(ends)))
 
 
@@ -241,7 +241,7 @@ def _slopes(
         return lambda u, _: _exact(tangents, u, n)
     if not isinstance(tangents, str) or tangents not in get_args(Tangents):
         got = _check.describe(tangents)
-        raise ValueError(_check.message("tangents", "'central', 'complex' or a function", got))
+        raise _check.value_error("tangents", "'central', 'complex' or a function", got)
     if tangents == "central":
         steps = _central_steps(step, ends, eps)
         return lambda u, _: _central(function, u, n, steps, ends)
@@ -264,8 +264,7 @@ def _slopes(
         if not np.all(np.abs(slopes - near) <= allowed):
             expected = "one that is analytic, as the complex step requires"
             got = "one for which the complex step and central differences disagree"
-            remedy = "pass tangents='central'"
-            raise ValueError(_check.message("function", expected, got, remedy))
+            raise _check.value_error("function", expected, got, "pass tangents='central'")
         return slopes
 
     return checked
@@ -299,9 +298,9 @@ def _exact(tangents: TangentFunction, u: Sequence[Array], n: int) -> Array:
     try:
         rows = list(returned)
     except TypeError as error:
-        raise TypeError(_check.message("tangents", expected, _check.describe(returned))) from error
+        raise _check.type_error("tangents", expected, returned) from error
     if len(rows) != len(u):
-        raise ValueError(_check.message("tangents", expected, len(rows)))
+        raise _check.value_error("tangents", expected, len(rows))
     return np.stack([_values(lambda *_, row=row: row, u, n, "tangents") for row in rows], axis=1)
 
 
@@ -319,9 +318,9 @@ def _rows(
         # Constant coordinates may be given as numbers.
         rows = [np.broadcast_to(np.asarray(row), u[0].shape) for row in returned]
     except (TypeError, ValueError) as error:
-        raise TypeError(_check.message(name, expected, _check.describe(returned))) from error
+        raise _check.type_error(name, expected, returned) from error
     if len(rows) != n:
-        raise ValueError(_check.message(name, expected, len(rows)))
+        raise _check.value_error(name, expected, len(rows))
     # A complex result is right only where a parameter is complex: its kind then joins the others.
     if any(row.dtype.kind not in "iubf" + np.result_type(*u).kind for row in rows):
         kinds = ", ".join(sorted({str(row.dtype) for row in rows}))
@@ -338,7 +337,7 @@ def _values(function: Function, u: Sequence[Numbers], n: int, name: str = "funct
         expected = "finite coordinates on its domain"
         where = ", ".join(f"{x[np.argmin(finite)]:g}" for x in u)
         got = f"{lost} of {len(points)} points with NaN or infinity, the first at ({where})"
-        raise ValueError(_check.message(name, expected, got, "choose a domain without them"))
+        raise _check.value_error(name, expected, got, "choose a domain without them")
     return points
 
 
@@ -436,7 +435,7 @@ def torus(*radii: float, resolution: int | Sequence[int] = 64) -> Manifold:
     section 3.
     """
     if not 1 <= len(radii) <= 3:
-        raise ValueError(_check.message("radii", "1 to 3 radii", len(radii)))
+        raise _check.value_error("radii", "1 to 3 radii", len(radii))
     # The square of a radius must be well within the range of float64.
     sizes = [_check.positive(f"radii[{i}]", r, high=LARGEST_RADIUS) for i, r in enumerate(radii)]
     k = len(sizes)

@@ -120,11 +120,11 @@ def _special_orthogonal(n: int, value: object) -> Array:
     try:
         matrix = _check.floats("rotation", value).astype(np.float64)
     except TypeError as error:
-        raise TypeError(_check.message("rotation", expected, _check.describe(value))) from error
+        raise _check.type_error("rotation", expected, value) from error
     if matrix.shape != (n, n):
-        raise ValueError(_check.message("rotation", expected, f"shape {matrix.shape}"))
+        raise _check.value_error("rotation", expected, f"shape {matrix.shape}")
     if not np.all(np.isfinite(matrix)):
-        raise ValueError(_check.message("rotation", "finite numbers", "NaN or infinity"))
+        raise _check.value_error("rotation", "finite numbers", "NaN or infinity")
     # Clipped, so that the squares of very large numbers do not overflow.
     small = np.clip(matrix, -2, 2)
     # R R^T is the unit matrix for rotations and reflections; the sign of the determinant tells
@@ -133,10 +133,10 @@ def _special_orthogonal(n: int, value: object) -> Array:
     if miss > SLACK:
         got = f"rows off by {miss:.2g}"
         remedy = "pass the nearest one, scipy.linalg.polar(matrix)[0]"
-        raise ValueError(_check.message("rotation", "an orthogonal matrix", got, remedy))
+        raise _check.value_error("rotation", "an orthogonal matrix", got, remedy)
     if np.linalg.det(matrix) < 0:
         remedy = "change the sign of one row"
-        raise ValueError(_check.message("rotation", "a rotation", "a reflection", remedy))
+        raise _check.value_error("rotation", "a rotation", "a reflection", remedy)
     return matrix
 
 
@@ -149,9 +149,9 @@ def _axes(plane: str | Sequence[int], n: int) -> tuple[int, int]:
         try:
             axes = tuple(_check.integer("plane", axis, low=0) for axis in plane)
         except TypeError as error:
-            raise TypeError(_check.message("plane", expected, _check.describe(plane))) from error
+            raise _check.type_error("plane", expected, plane) from error
     if len(axes) != 2 or axes[0] == axes[1] or not all(0 <= axis < n for axis in axes):
-        raise ValueError(_check.message("plane", expected, repr(plane)))
+        raise _check.value_error("plane", expected, repr(plane))
     return axes[0], axes[1]
 
 
@@ -191,7 +191,7 @@ def turn(vectors: ArrayLike, matrix: ArrayLike, /) -> Array:
     n = rows.shape[-1]
     if square.shape != (n, n):
         expected = f"shape ({n}, {n}), since vectors have {n} components"
-        raise ValueError(_check.message("matrix", expected, f"shape {square.shape}"))
+        raise _check.value_error("matrix", expected, f"shape {square.shape}")
     with np.errstate(over="ignore", invalid="ignore"):
         return rows @ square.T
 
@@ -306,7 +306,7 @@ def push_forward(
     positions = _check.vectors("points", points, n=rows.shape[-1])
     if rows.ndim < 2 or rows.shape[:-2] != positions.shape[:-1]:
         expected = f"shape (..., k, n) for points of shape {positions.shape}"
-        raise ValueError(_check.message("vectors", expected, f"shape {rows.shape}"))
+        raise _check.value_error("vectors", expected, f"shape {rows.shape}")
     if rows.shape[-1] == 2:
         return np.concatenate([rows, np.zeros_like(rows[..., :1])], axis=-1)
     if distance is None:
@@ -368,9 +368,9 @@ def push_frame(
     points = _check.floats("points", points)
     if points.shape != (*rows.shape[:-2], n):
         expected = f"shape {(*rows.shape[:-2], n)} for a frame of shape {rows.shape}"
-        raise ValueError(_check.message("points", expected, points))
+        raise _check.value_error("points", expected, points)
     if k > 3:
-        raise ValueError(_check.message("frame", "3 tangents or fewer", k))
+        raise _check.value_error("frame", "3 tangents or fewer", k)
     tolerance = default_rtol(n, rows.dtype) if rtol is None else rtol
     tolerance = _check.number("rtol", tolerance, low=0.0, high=_check.LARGEST)
     image = push_forward(rows, points, distance=distance)

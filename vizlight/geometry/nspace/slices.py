@@ -73,7 +73,7 @@ def cut(values: ArrayLike, simplices: ArrayLike, /) -> tuple[Indices, Array, Any
     """
     height = _check.floats("values", values).astype(np.float64)
     if height.ndim != 1:
-        raise ValueError(_check.message("values", "shape (N,)", height))
+        raise _check.value_error("values", "shape (N,)", height)
     corners = _check.cells("simplices", simplices, len(height), list(_EDGES), of="values")
     size = corners.shape[1]
     corners = corners[np.all(np.isfinite(height[corners]), axis=1)]
@@ -145,16 +145,16 @@ def mean_frame(frame: ArrayLike, shares: Foreign, /) -> Array:
     """
     rows, _ = orthonormalize(frames.as_rows("frame", frame, full=True))
     if rows.ndim != 3:
-        raise ValueError(_check.message("frame", "shape (N, k, n)", f"shape {rows.shape}"))
+        raise _check.value_error("frame", "shape (N, k, n)", f"shape {rows.shape}")
     count, k, n = rows.shape
     sparse: bool = scipy.sparse.issparse(shares)
     if not sparse or shares.dtype.kind not in "iuf":
         expected = "a sparse array of real numbers"
-        raise TypeError(_check.message("shares", expected, _check.describe(shares)))
+        raise _check.type_error("shares", expected, shares)
     parts = scipy.sparse.csr_array(shares)
     if parts.shape[1] != count:
         expected = f"a matrix of {count} columns, one per point of frame"
-        raise ValueError(_check.message("shares", expected, f"shape {parts.shape}"))
+        raise _check.value_error("shares", expected, f"shape {parts.shape}")
     owner = np.repeat(np.arange(parts.shape[0]), np.diff(parts.indptr))
     # With entries sorted by share, the last entry of each owner is the one with its largest share.
     order = np.lexsort((parts.data, owner))
@@ -209,11 +209,10 @@ def slice_frame(frame: ArrayLike, normal: ArrayLike, /, *, rtol: float | None = 
     rows, rank = orthonormalize(frames.as_rows("frame", frame, full=True))
     k, n = rows.shape[-2:]
     if k < 2:
-        raise ValueError(_check.message("frame", "2 tangents or more", k))
+        raise _check.value_error("frame", "2 tangents or more", k)
     across = np.array(_check.vector("normal", normal, direction=True))
     if len(across) != n:
-        expected = f"{n} components, like the rows of frame"
-        raise ValueError(_check.message("normal", expected, len(across)))
+        raise _check.value_error("normal", f"{n} components, like the rows of frame", len(across))
     # By the largest component first, so that no square overflows.
     across /= np.abs(across).max()
     a = rows @ (across / np.linalg.norm(across))

@@ -59,7 +59,7 @@ def depth_map(
     for name, axis in zip("xy", axes, strict=True):
         step = np.diff(axis) if axis.ndim == 1 else np.zeros(1)
         if axis.ndim != 1 or len(axis) < 2 or not np.allclose(step, step[0]) or step[0] <= 0:
-            raise ValueError(_check.message(name, "rising nodes of equal spacing", axis))
+            raise _check.value_error(name, "rising nodes of equal spacing", axis)
     _check.function("progress", progress, optional=True)
     vertices = _check.vectors("points", points, n=3).astype(np.float64)
     # A triangle with a vertex that is not finite, or too far for float64, covers no node.
@@ -120,5 +120,4 @@ def _over(corners: Array, z: Array, node: Indices) -> tuple[Bools, Array]:
 
 
 def _cross(a: Array, b: Array) -> Array:
-    result: Array = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return result
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

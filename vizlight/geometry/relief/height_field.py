@@ -123,21 +123,21 @@ def make(
     shape = (len(axes[1]), len(axes[0]))
     if heights.shape != shape:
         expected = f"heights of shape (len(y), len(x)) = {shape}"
-        raise ValueError(_check.message("z", expected, heights))
+        raise _check.value_error("z", expected, heights)
     _check.choice("border", border, get_args(Border))
     wide: Array = heights.astype(np.float64)
     if np.isinf(wide).any():
-        raise ValueError(_check.message("z", "finite heights, NaN in holes", "infinite heights"))
+        raise _check.value_error("z", "finite heights, NaN in holes", "infinite heights")
     if not max(*(np.abs(axis).max() for axis in (*axes, np.nan_to_num(wide)))) <= _check.FARTHEST:
         expected = f"a field within {_check.FARTHEST:g} of the origin"
-        raise ValueError(_check.message("x, y, z", expected, "one farther away"))
+        raise _check.value_error("x, y, z", expected, "one farther away")
     lengths = np.ones(shape[0]) if stretch is None else _check.floats("stretch", stretch)
     if lengths.shape != shape[:1] or not np.all((lengths > 0) & np.isfinite(lengths)):
         expected = f"{shape[0]} positive numbers, one for each row"
-        raise ValueError(_check.message("stretch", expected, lengths))
+        raise _check.value_error("stretch", expected, lengths)
     there = ~np.isnan(wide)
     if not there.any():
-        raise ValueError(_check.message("z", "heights", "NaN everywhere"))
+        raise _check.value_error("z", "heights", "NaN everywhere")
     # The origin is subtracted in float64 first, so that no digit of float32 input is lost.
     low = float(wide[there].min())
     wide -= low
@@ -146,7 +146,7 @@ def make(
     # Products of up to four lengths stay in the range of float64.
     if not 1e-70 <= min(sides) <= max(*sides, top) <= 1e70:
         expected = "a field with sides between 1e-70 and 1e70"
-        raise ValueError(_check.message("x, y, z", expected, (*sides, top)))
+        raise _check.value_error("x, y, z", expected, (*sides, top))
     # Where the solid extends without end it has no holes either.
     wide = wide if border == "wall" else filled(wide)
     return Field(
@@ -269,10 +269,10 @@ def _axis(name: str, values: ArrayLike) -> Array:
     nodes = _check.floats(name, values).astype(np.float64)
     if nodes.ndim != 1 or len(nodes) < 2:
         remedy = "for a field of one row repeat the row"
-        raise ValueError(_check.message(name, "two nodes or more", nodes, remedy))
+        raise _check.value_error(name, "two nodes or more", nodes, remedy)
     if not (np.all(np.isfinite(nodes)) and np.all(np.diff(nodes) > 0)):
         remedy = "sort the nodes and the heights"
-        raise ValueError(_check.message(name, "finite, rising nodes", nodes, remedy))
+        raise _check.value_error(name, "finite, rising nodes", nodes, remedy)
     return nodes
 
 

@@ -21,8 +21,6 @@ from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.height_field import Border, Bounds, Field
 from vizlight.model import kernels
 
-__all__ = ["inside_length", "shadow"]
-
 #: Represents infinity on a ray; unlike infinity it gives 0 when multiplied by 0.
 FAR = 1e300
 #: Processor time that a compiled ray saves compared with one of :func:`march`, in seconds.
@@ -483,8 +481,7 @@ def shadow(
     else:
         normal = _check.vectors("normals", normals, n=3).astype(np.float64)
         if normal.shape != (*field.heights.shape, 3):
-            expected = f"shape {(*field.heights.shape, 3)}"
-            raise ValueError(_check.message("normals", expected, normal))
+            raise _check.value_error("normals", f"shape {(*field.heights.shape, 3)}", normal)
         dark |= ~(np.any(normal, axis=-1) & np.all(np.isfinite(normal), axis=-1))
         normal[dark] = 0
     t = ratio(field, normal, depth, direction=direction, position=position)
@@ -502,7 +499,7 @@ def toward(
     """
     if (direction is None) == (position is None):
         got = "neither" if direction is None else "both"
-        raise ValueError(_check.message("direction, position", "one of them", got))
+        raise _check.value_error("direction, position", "one of them", got)
     name = "direction" if position is None else "position"
     value = direction if position is None else position
     vector = _check.vector(name, value, direction=position is None, n=3)
@@ -524,7 +521,7 @@ def toward(
     if inside[0] > 1e-9 * field.size:
         height = lamp[2] + inside[0] + field.origin[2]
         expected = f"a light outside the solid, above {height:.9g} there"
-        raise ValueError(_check.message("position", expected, vector, "raise the light"))
+        raise _check.value_error("position", expected, vector, "raise the light")
 
     def to_lamp(start: Array, stretch: Array | float) -> tuple[Array, Array]:
         way = lamp[:, np.newaxis] - start
@@ -554,7 +551,7 @@ def ratio(
     """
     if depth * LEAST_DEPTH > field.size:
         expected = f"at most {field.size / LEAST_DEPTH:g}, 1e9 times the size of the field"
-        raise ValueError(_check.message("depth", expected, depth))
+        raise _check.value_error("depth", expected, depth)
     ways = toward(field, direction, position)
     # At depth 0 t is a limit: the cosine where the ray leaves at once, else 0.
     limit = depth <= LEAST_DEPTH * field.size

@@ -39,8 +39,7 @@ def seen(t: float, rise: float, upright: float, openness: bool) -> float:
         return math.atan2(1.0, t)
     t = max(t, rise)
     square = 1 / (1 + t * t)
-    value: float = upright * (square - rise * (math.atan2(1.0, t) - t * square))
-    return value
+    return upright * (square - rise * (math.atan2(1.0, t) - t * square))
 
 
 @_compiled.kernel(inline=True, rounding=_compiled.ROUNDING)

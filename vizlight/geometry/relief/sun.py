@@ -49,7 +49,7 @@ def directions(latitude: float, day: float, hours: ArrayLike, /) -> Array:
     day = _check.number("day", day, low=1.0, high=366.0)
     times = _check.floats("hours", hours).astype(np.float64)
     if not np.all((times >= 0) & (times <= 24)):
-        raise ValueError(_check.message("hours", "hours from 0 to 24", _check.describe(hours)))
+        raise _check.value_error("hours", "hours from 0 to 24", _check.describe(hours))
     # Angle since the start of the year; a tropical year has 365.2422 days.
     year = 2 * np.pi * (day - 1 + times / 24) / 365.2422
     # Mean anomaly and mean longitude, whose values at the start of the year are in degrees.
@@ -96,10 +96,9 @@ def toward(azimuth: ArrayLike, altitude: ArrayLike, /) -> Array:
     around = _check.floats("azimuth", azimuth).astype(np.float64)
     above = _check.floats("altitude", altitude).astype(np.float64)
     if not np.all(np.isfinite(around)):
-        raise ValueError(_check.message("azimuth", "finite angles", _check.describe(azimuth)))
+        raise _check.value_error("azimuth", "finite angles", _check.describe(azimuth))
     if not np.all(np.abs(above) <= 90):
-        expected = "degrees from -90 to 90"
-        raise ValueError(_check.message("altitude", expected, _check.describe(altitude)))
+        raise _check.value_error("altitude", "degrees from -90 to 90", _check.describe(altitude))
     # Whole turns are taken off in degrees: in radians they are no floating-point number.
     turn, rise = _check.together(azimuth=np.radians(around % 360), altitude=np.radians(above))
     east, north = np.cos(rise) * np.sin(turn), np.cos(rise) * np.cos(turn)

@@ -107,11 +107,11 @@ class Polyhedron(Primitive):
         elif triangles is None:
             expected = "a pyvista.PolyData, or an array of points and one of triangles"
             remedy = "pass mesh.extract_surface()"
-            raise TypeError(_check.message("points", expected, _check.describe(points), remedy))
+            raise _check.type_error("points", expected, points, remedy)
         _check.vectors("points", points, n=3)
         places = _check.coordinates("points", points)
         if places.ndim != 2:
-            raise ValueError(_check.message("points", "shape (P, 3)", places))
+            raise _check.value_error("points", "shape (P, 3)", places)
         corners = _check.cells("triangles", triangles, len(places), (3,))
         # Many files, as STL, hold a point for each corner of a face, and none of their edges meet
         # before equal points are one.
@@ -126,7 +126,7 @@ class Polyhedron(Primitive):
         if not np.array_equal(np.unique(edges), np.sort(back, axis=None)):
             remedy = "fill its holes, and run mesh.clean() and mesh.compute_normals()"
             expected = "a closed surface with consistently oriented triangles"
-            raise ValueError(_check.message("triangles", expected, "another", remedy))
+            raise _check.value_error("triangles", expected, "another", remedy)
         self.points, self.triangles = unique, faces
         # All triangles are clockwise seen from outside.
         if self.volume < 0:
@@ -229,11 +229,10 @@ class Prism(Polyhedron):
         height = _check.number("height", height, low=0.0, high=_check.FARTHEST)
         if corners.ndim != 2 or len(corners) < 3 or not height > 0:
             got = f"{len(corners)} corners and a height of {height:g}"
-            expected = "3 corners or more, and a height above 0"
-            raise ValueError(_check.message("outline", expected, got))
+            raise _check.value_error("outline", "3 corners or more, and a height above 0", got)
         if _crosses(corners):
             remedy = "remove repeated corners and crossings"
-            raise ValueError(_check.message("outline", "a simple polygon", "another", remedy))
+            raise _check.value_error("outline", "a simple polygon", "another", remedy)
         # Twice the signed area of the polygon.
         x, y = (corners - corners.mean(axis=0)).T
         if x @ np.roll(y, -1) - y @ np.roll(x, -1) < 0:
@@ -283,7 +282,7 @@ def _ears(corners: Array) -> Indices:
                 break
         else:
             remedy = "remove corners in the middle of straight edges"
-            raise ValueError(_check.message("outline", "a polygon with an area", "none", remedy))
+            raise _check.value_error("outline", "a polygon with an area", "none", remedy)
     return np.array([*ears, tuple(ring)], np.intp)
 
 

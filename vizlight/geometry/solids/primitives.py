@@ -135,7 +135,7 @@ class Solid:
         """
         places = np.asarray(_check.vectors("points", points, n=3), dtype=np.float64)
         if places.ndim != 2:
-            raise ValueError(_check.message("points", "shape (N, 3)", places))
+            raise _check.value_error("points", "shape (N, 3)", places)
         return self.inside(places)
 
 
@@ -221,11 +221,9 @@ class Boolean(Solid):
 
     def __post_init__(self) -> None:
         _check.choice("operation", self.operation, ("union", "intersection", "difference"))
-        operands: tuple[tuple[str, object], ...] = (("first", self.first), ("second", self.second))
-        for name, solid in operands:
-            if not isinstance(solid, Solid):
-                remedy = "make a solid of a closed mesh by vizlight.Polyhedron(mesh)"
-                raise TypeError(_check.message(name, EXPECTED, _check.describe(solid), remedy))
+        remedy = "make a solid of a closed mesh by vizlight.Polyhedron(mesh)"
+        for name, solid in (("first", self.first), ("second", self.second)):
+            _check.instance(name, solid, Solid, EXPECTED, remedy=remedy)
 
     def moved(self, shift: Array, scale: float, turn: Array | None = None) -> Boolean:
         """Return the solid ``turn @ (x - shift) / scale``, with an optional rotation matrix."""
@@ -382,14 +380,14 @@ class Frustum(Primitive):
         along = axial.triple("axis", axis)
         if not np.any(along):
             remedy = "pass its direction, and height=0 for a disc without thickness"
-            raise ValueError(_check.message("axis", "a vector of non-zero length", along, remedy))
+            raise _check.value_error("axis", "a vector of non-zero length", along, remedy)
         self.axis = _check.unit("axis", axis)
         self.height = (
             math.hypot(*along) if height is None else _check.number("height", height, low=0.0)
         )
         ends = _check.floats("radii", radii)
         if ends.shape != (2,):
-            raise ValueError(_check.message("radii", "two radii (R1, R2)", _check.describe(radii)))
+            raise _check.value_error("radii", "two radii (R1, R2)", _check.describe(radii))
         first, second = (_check.number("radii", float(x), low=0.0) for x in ends)
         self.radii = (first, second)
 
@@ -458,12 +456,12 @@ class Block(Primitive):
         self.center = axial.triple("center", center)
         self.size = axial.triple("size", size)
         if np.any(self.size < 0):
-            raise ValueError(_check.message("size", "lengths of 0 or more", _check.describe(size)))
+            raise _check.value_error("size", "lengths of 0 or more", _check.describe(size))
         rows = np.asarray(_check.vectors("axes", np.eye(3) if axes is None else axes, n=3), float)
         # Rows that were computed in float32 pass.
         if rows.shape != (3, 3) or not np.allclose(rows @ rows.T, np.eye(3), atol=1e-6):
             expected, remedy = "3 orthonormal rows", "orthonormalise them"
-            raise ValueError(_check.message("axes", expected, _check.describe(axes), remedy))
+            raise _check.value_error("axes", expected, _check.describe(axes), remedy)
         self.axes = rows
 
     @property
@@ -533,7 +531,7 @@ class Torus(Primitive):
         # A tube as wide as its ring would meet itself on the axis.
         if self.tube_radius >= self.ring_radius:
             expected = f"a radius below ring_radius={self.ring_radius:g}"
-            raise ValueError(_check.message("tube_radius", expected, self.tube_radius))
+            raise _check.value_error("tube_radius", expected, self.tube_radius)
 
     @property
     def roundness(self) -> float:

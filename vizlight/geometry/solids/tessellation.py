@@ -27,9 +27,6 @@ from vizlight.geometry.solids.triangle_mesh import Mesh
 if TYPE_CHECKING:
     import manifold3d
 
-__all__ = ["tessellate"]
-
-
 #: Largest number of points of all primitives together.
 MOST = 400_000
 #: That number where finer facets are tried, which keep thin walls between surfaces: the points
@@ -91,12 +88,11 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     between surfaces that nearly touch may lie anywhere near them; for 30 closed forms its relative
     error was at most 4 times the tolerance, from 5e-4 to 2e-2. Source: Isoluminance, Further Work.
     """
-    if not isinstance(solid, Solid):
-        raise TypeError(_check.message("solid", EXPECTED, _check.describe(solid)))
+    _check.instance("solid", solid, Solid, EXPECTED)
     tolerance = _check.number("tolerance", tolerance, low=1e-6, high=0.1)
     if isinstance(solid, HalfSpace):
         expected, remedy = "a bounded solid", "intersect it with a bounded one"
-        raise ValueError(_check.message("solid", expected, solid, remedy))
+        raise _check.value_error("solid", expected, solid, remedy)
     if isinstance(solid, Primitive):
         # A chord of the angle 2 pi / n is r (1 - cos(pi / n)) away from its circle.
         segments = max(FEWEST, math.ceil(math.pi / math.acos(1 - tolerance)))
@@ -124,7 +120,7 @@ def tessellate(solid: Solid, /, *, tolerance: float = 3e-3) -> Mesh:
     expected = f"a value that needs at most {most:.0f} points"
     got = f"{tolerance:g}, which needs {count:.0f}"
     remedy = "raise it, or separate or join surfaces that nearly touch"
-    raise ValueError(_check.message("tolerance", expected, got, remedy))
+    raise _check.value_error("tolerance", expected, got, remedy)
 
 
 @dataclass
@@ -239,7 +235,7 @@ class _Tree:
             if isinstance(part, HalfSpace) and np.any(np.isin(patch, ends)):
                 expected = "a bounded combination of a half-space with others"
                 remedy = "intersect it with a bounded solid, or subtract it from one"
-                raise ValueError(_check.message("solid", expected, part, remedy))
+                raise _check.value_error("solid", expected, part, remedy)
 
 
 def _frame(parts: list[Primitive]) -> tuple[Array, float]:
@@ -282,7 +278,7 @@ def _leaf(part: Primitive, segments: int, number: Indices) -> manifold3d.Manifol
     )
     if leaf.status() != Error.NoError:
         remedy = "leave it out, or make it thicker"
-        raise ValueError(_check.message("solid", "parts that are not flat", part, remedy))
+        raise _check.value_error("solid", "parts that are not flat", part, remedy)
     return leaf
 
 
