@@ -25,6 +25,9 @@ class Figure:
     ----------
     bits : float
         Information that the picture, as the eye sees it, gives about equally likely candidates.
+    most : float
+        Bits that a reader has who is sure of the right candidate everywhere, the most possible:
+        the logarithm of the number of candidates, of their classes where they are ranked.
     readable : float
         Share of the drawn places at which the answer is right within a tolerance, less what
         guessing gives (Abbott 1925): 0 is chance, 1 is all of the picture.
@@ -38,6 +41,7 @@ class Figure:
     """
 
     bits: float
+    most: float
     readable: float
     samples: int
     reason: str = ""
@@ -51,10 +55,19 @@ class Figure:
         """Whether the picture tells less than 0.3 bits of the question."""
         return bool(self.reason)
 
+    @property
+    def score(self) -> float:
+        """Share of the possible bits times the readable share, 0 to 1, by which questions compare.
+
+        Bits alone are at most 1 of order, and some 9.8 of shape. It is 0 where a question is
+        unreadable.
+        """
+        return 0.0 if self.unreadable else self.bits / self.most * self.readable
+
     def rows(self) -> list[tuple[str, str, str]]:
         """Return words, figure and chance of each row of the table; ``chance`` if unreadable."""
         more = (
-            ("bits", "information", "{:.2f} bits", "0"),
+            ("bits", "information", f"{{:.2f}} of {self.most:.1f} bits", "0"),
             ("readable", "readable share of the picture", "{:.0%}", "0%"),
         )
         answers = [
@@ -187,6 +200,7 @@ class TwoSided(Figure):
 
     told: float
     wrongly: float
+    most: float = 1.0
     chance: float = 0.5
 
     ROWS = (("told", "told", "{:.0%}", "50%"), ("wrongly", "told wrongly", "{:.0%}", "50%"))

@@ -478,6 +478,7 @@ class _PictureReader:
             self.scale = _scale(question, lengths, unit, right & (not unread), guessed)
         return {
             "bits": bits,
+            "most": readers.most_told(readings),
             "readable": 0.0 if unread else _beyond_chance(right, guessed),
             "samples": len(error),
             "reason": self._reason(question, groups, lengths) if unread else "",
@@ -659,6 +660,7 @@ class _PictureReader:
         return {
             "spearman": 0.0 if unread else readers.rank_correlation(signal, magnitude),
             "bits": bits,
+            "most": readers.most_ranked(len(signal)),
             "readable": 0.0 if unread else _beyond_chance(right, GUESSED["rank"]),
             "samples": len(signal),
             "reason": self._reason("rank", groups, none) if unread else "",
