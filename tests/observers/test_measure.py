@@ -361,7 +361,7 @@ def test_angles_are_a_share_and_a_median_unless_they_are_chance():
 
 
 def test_what_is_guessed_is_the_share_of_the_tolerance():
-    tolerance, guessed = measure.TOLERANCE, measure.GUESSED
+    tolerance = measure.TOLERANCE
     assert tolerance == {
         "direction": 15, "heading": 15, "shape": 20, "value": 0.1, "rank": 0.15,
     }  # fmt: skip

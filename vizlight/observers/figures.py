@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import html
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
@@ -47,6 +48,8 @@ class Figure:
     reason: str = ""
     chance: float = 0.0
 
+    #: Share of answers that are within the tolerance by chance.
+    guessed: ClassVar[float] = 0.3
     #: Rows of the table: attribute, words, form, and what guessing gives.
     ROWS: ClassVar[tuple[tuple[str, str, str, str], ...]] = ()
 
@@ -57,12 +60,13 @@ class Figure:
 
     @property
     def score(self) -> float:
-        """Share of the possible bits times the readable share, 0 to 1, by which questions compare.
+        """Bits in those of an answer within the tolerance, the figure by which questions compare.
 
-        Bits alone are at most 1 of order, and some 9.8 of shape. It is 0 where a question is
-        unreadable.
+        Of equal answers ``1 / guessed`` are that far apart, and ``-log2(guessed)`` bits tell one
+        of them from the others. It is 0 where a question is unreadable, and above 1 where more is
+        told than is asked.
         """
-        return 0.0 if self.unreadable else self.bits / self.most * self.readable
+        return 0.0 if self.unreadable else self.bits / -math.log2(self.guessed)
 
     def rows(self) -> list[tuple[str, str, str]]:
         """Return words, figure and chance of each row of the table; ``chance`` if unreadable."""
@@ -95,6 +99,7 @@ class Direction(Figure):
     median: float
     chance: float = 45.0
 
+    guessed = 1 / 6
     ROWS = (
         ("within_10", "within 10 degrees", "{:.1%}", "11.1%"),
         ("median", "median error", "{:.1f} degrees", "45"),
@@ -140,6 +145,8 @@ class Shape(Figure):
     median: float
     chance: float = 45.0
 
+    #: By the direction of the eye as the answer: sin^2.
+    guessed = 0.117
     ROWS = (("median", "median error of the normal", "{:.1f} degrees", "45"),)
 
 
@@ -159,6 +166,7 @@ class Value(Figure):
     largest: float
     chance: float = 0.25
 
+    guessed = 0.2
     ROWS = (
         ("median", "median error, nearest colour of the bar", "{:.1%} of the range", "25%"),
         ("p95", "95 % of the errors", "{:.1%} of the range", "48%"),
@@ -203,6 +211,7 @@ class TwoSided(Figure):
     most: float = 1.0
     chance: float = 0.5
 
+    guessed = 0.5
     ROWS = (("told", "told", "{:.0%}", "50%"), ("wrongly", "told wrongly", "{:.0%}", "50%"))
 
 
