@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from vizlight.observers.figures import (
@@ -19,29 +20,43 @@ from vizlight.observers.figures import (
 
 HOW = {"size": (200, 100), "size_mm": 20.0, "distance_mm": 400.0, "toward_eye": (0.0, 0.0, 1.0)}
 HOW |= {"pixels": 5000, "noise": 2.3, "seed": 7}
-READ = Direction(bits=1.25, readable=0.5, samples=100, within_10=0.4, median=12.5)
+READ = Direction(bits=1.25, most=7.5, readable=0.5, samples=100, within_10=0.4, median=12.5)
 UNREAD = Value(
-    bits=0.125, readable=0.0, samples=100, reason="too fine", median=0.25, p95=0.475, largest=0.5
-)
+    bits=0.125, most=7.0, readable=0.0, samples=100, reason="too fine",
+    median=0.25, p95=0.475, largest=0.5,
+)  # fmt: skip
 
 
 def test_figures_are_rows_with_their_chance():
     assert READ.rows() == [
         ("within 10 degrees", "40.0%", "11.1%"),
         ("median error", "12.5 degrees", "45"),
-        ("information", "1.25 bits", "0"),
+        ("information", "1.25 of 7.5 bits", "0"),
         ("readable share of the picture", "50%", "0%"),
     ]
     assert not READ.unreadable
     order = Order(bits=0.5, readable=0.25, samples=8, told=0.5, wrongly=0.25)
-    assert order.rows()[:2] == [("told", "50%", "50%"), ("told wrongly", "25%", "50%")]
+    assert order.rows()[:3] == [
+        ("told", "50%", "50%"),
+        ("told wrongly", "25%", "50%"),
+        ("information", "0.50 of 1.0 bits", "0"),
+    ]
+
+
+def test_the_score_is_in_bits_of_an_answer_within_the_tolerance():
+    # Six directions are 30 degrees apart, so that 15 degrees tell which.
+    assert READ.score == pytest.approx(1.25 / np.log2(6))
+    assert Order(bits=1, readable=1, samples=8, told=1, wrongly=0).score == 1
+    assert UNREAD.score == 0
+    ranked = Speed(bits=-np.log2(0.3), most=4, readable=1, samples=8, spearman=1)
+    assert ranked.score == pytest.approx(1)
 
 
 def test_what_is_unreadable_is_chance_and_has_a_reason():
     assert UNREAD.unreadable
     rows = [(figure, chance) for _, figure, chance in UNREAD.rows()]
     assert rows == [("chance", x) for x in ("25%", "48%", "50%")] + [
-        ("0.12 bits", "0"),
+        ("0.12 of 7.0 bits", "0"),
         ("0%", "0%"),
     ]
     found = Legibility(direction=READ, value=UNREAD, **HOW)

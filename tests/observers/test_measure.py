@@ -28,6 +28,7 @@ from vizlight import presets
 from vizlight.draw.cameras import camera_on
 from vizlight.observers import measure, readers
 from vizlight.observers.eye import Eye, linear
+from vizlight.observers.figures import Speed
 from vizlight.observers.lines import Segments
 from vizlight.observers.pixels import Pixels
 
@@ -361,7 +362,9 @@ def test_angles_are_a_share_and_a_median_unless_they_are_chance():
 
 
 def test_what_is_guessed_is_the_share_of_the_tolerance():
-    tolerance, guessed = measure.TOLERANCE, measure.GUESSED
+    tolerance = measure.TOLERANCE
+    guessed = {question: kind.guessed for question, kind in measure.MATCHED.items()}
+    guessed["rank"] = Speed.guessed
     assert tolerance == {
         "direction": 15, "heading": 15, "shape": 20, "value": 0.1, "rank": 0.15,
     }  # fmt: skip

@@ -465,6 +465,28 @@ def test_curved_faces_with_vectors_of_cells_have_their_normals(monkeypatch):
 
 
 @pytest.mark.parametrize("name", ["W", "u,v,w"])
+def test_faces_beside_lines_are_near_what_they_are_in_the_whole(name, monkeypatch):
+    plane = flow()
+    rim = pv.PolyData(plane.points, lines=[2, 0, 1, 2, 40, 70, 2, 70, 71, 2, 100, 20])
+    plane.lines = rim.lines
+    grid = pv.merge([flow().cast_to_unstructured_grid(), rim.cast_to_unstructured_grid()])
+    light, chosen = LightOptions(tangents=name), np.arange(0, 288, 7)
+    for mesh in map(with_vectors, (plane, grid)):
+        values = np.arange(float(mesh.n_cells))
+        parts = []
+        for size in (1 << 17, 0):
+            monkeypatch.setattr(samples, "WHOLE", size)
+            part = samples.part_on(mesh, SCENE, light, values=values, flat=True)
+            assert part.large == (size == 0)
+            parts.append(part.near(chosen))
+        np.testing.assert_array_equal(parts[0].values, parts[1].values)
+        for rows in ("points", "tangents", "normals"):
+            found, same = (getattr(p.inputs, rows)[:][p.cells] for p in parts)
+            np.testing.assert_allclose(np.abs(found), np.abs(same), atol=2e-6)
+        assert parts[0].inputs.line_field == parts[1].inputs.line_field == (name == "W")
+
+
+@pytest.mark.parametrize("name", ["W", "u,v,w"])
 def test_a_moved_mesh_has_the_means_of_its_cells(name):
     for mesh in (*solids()[:3], pv.Plane(i_resolution=4, j_resolution=3), curls(20, 3)):
         with_vectors(mesh)

@@ -181,6 +181,8 @@ def test_what_all_places_have_in_common_is_not_told():
     alike = np.zeros(64, dtype=int)
     assert readers.bits_told([reading_of(sure[:1].repeat(64, 0), alike)]) == 0
     assert readers.information([reading_of(sure[:1].repeat(64, 0), alike)]) > 2.9
+    assert readers.most_told([reading_of(sure, right)]) == 3
+    assert [readers.most_ranked(n) for n in (8, 128, 1 << 12)] == [1, 2, 4]
 
 
 def test_wrong_belief_tells_nothing_and_a_coin_one_bit_less():

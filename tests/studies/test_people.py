@@ -78,9 +78,9 @@ def test_errors_of_answers(question, answer, truth, error):
     assert COMPARE["error_of"](question, answer, truth) == pytest.approx(error)
 
 
-def test_answers_that_follow_the_bits_correlate_with_them(tmp_path, capsys):
+def test_answers_that_follow_the_score_correlate_with_it(tmp_path, capsys):
     def sure(t):
-        if t["bits"] > np.median([u["bits"] for u in TRIALS]):
+        if t["score"] > np.median([u["score"] for u in TRIALS]):
             return right(t)
         if t["question"] == "direction":
             return (t["right"] + 90) % 180

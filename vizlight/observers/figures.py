@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import html
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
@@ -25,6 +26,9 @@ class Figure:
     ----------
     bits : float
         Information that the picture, as the eye sees it, gives about equally likely candidates.
+    most : float
+        Bits that a reader has who is sure of the right candidate everywhere, the most possible:
+        the logarithm of the number of candidates, of their classes where they are ranked.
     readable : float
         Share of the drawn places at which the answer is right within a tolerance, less what
         guessing gives (Abbott 1925): 0 is chance, 1 is all of the picture.
@@ -38,11 +42,14 @@ class Figure:
     """
 
     bits: float
+    most: float
     readable: float
     samples: int
     reason: str = ""
     chance: float = 0.0
 
+    #: Share of answers that are within the tolerance by chance.
+    guessed: ClassVar[float] = 0.3
     #: Rows of the table: attribute, words, form, and what guessing gives.
     ROWS: ClassVar[tuple[tuple[str, str, str, str], ...]] = ()
 
@@ -51,10 +58,20 @@ class Figure:
         """Whether the picture tells less than 0.3 bits of the question."""
         return bool(self.reason)
 
+    @property
+    def score(self) -> float:
+        """Bits in those of an answer within the tolerance, the figure by which questions compare.
+
+        Of equal answers ``1 / guessed`` are that far apart, and ``-log2(guessed)`` bits tell one
+        of them from the others. It is 0 where a question is unreadable, and above 1 where more is
+        told than is asked.
+        """
+        return 0.0 if self.unreadable else self.bits / -math.log2(self.guessed)
+
     def rows(self) -> list[tuple[str, str, str]]:
         """Return words, figure and chance of each row of the table; ``chance`` if unreadable."""
         more = (
-            ("bits", "information", "{:.2f} bits", "0"),
+            ("bits", "information", f"{{:.2f}} of {self.most:.1f} bits", "0"),
             ("readable", "readable share of the picture", "{:.0%}", "0%"),
         )
         answers = [
@@ -82,6 +99,7 @@ class Direction(Figure):
     median: float
     chance: float = 45.0
 
+    guessed = 1 / 6
     ROWS = (
         ("within_10", "within 10 degrees", "{:.1%}", "11.1%"),
         ("median", "median error", "{:.1f} degrees", "45"),
@@ -127,6 +145,8 @@ class Shape(Figure):
     median: float
     chance: float = 45.0
 
+    #: By the direction of the eye as the answer: sin^2.
+    guessed = 0.117
     ROWS = (("median", "median error of the normal", "{:.1f} degrees", "45"),)
 
 
@@ -146,6 +166,7 @@ class Value(Figure):
     largest: float
     chance: float = 0.25
 
+    guessed = 0.2
     ROWS = (
         ("median", "median error, nearest colour of the bar", "{:.1%} of the range", "25%"),
         ("p95", "95 % of the errors", "{:.1%} of the range", "48%"),
@@ -187,8 +208,10 @@ class TwoSided(Figure):
 
     told: float
     wrongly: float
+    most: float = 1.0
     chance: float = 0.5
 
+    guessed = 0.5
     ROWS = (("told", "told", "{:.0%}", "50%"), ("wrongly", "told wrongly", "{:.0%}", "50%"))
 
 

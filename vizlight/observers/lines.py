@@ -32,6 +32,8 @@ JUMP = 1e6
 #: Width in arc minutes of the window in which a reader sees how much of a stroke there is, and
 #: width of the one in which what is around it is seen, in widths of the first.
 WINDOW, AROUND = 8.0, 4
+#: Number of channels of marks, fine and coarse.
+CHANNELS = 2
 #: Least number of pixels of both ends of a stroke whose sense is read.
 END = 3
 #: Number of segments whose places are found at once.
@@ -281,7 +283,8 @@ def grain_of(seen: SeenPicture, eye: Eye, seed: int) -> Array:
 
     It is the structure tensor of a window of 8 arc minutes (Bigun and Granlund 1987): the grain is
     across the direction in which the colours change most. Changes over more than the window, such
-    as shading, are no grain.
+    as shading, are no grain. The eye has channels for fine and for coarse marks: changes are those
+    of a pixel, and of half of the variance of the window, in which the noise of pixels is less.
 
     Parameters
     ----------
@@ -294,21 +297,24 @@ def grain_of(seen: SeenPicture, eye: Eye, seed: int) -> Array:
 
     Returns
     -------
-    ndarray, shape (H, W, 3)
-        Mean products of the changes to the right and down: xx, xy, yy.
+    ndarray, shape (H, W, CHANNELS, 3)
+        Mean products of the changes to the right and down in each channel: xx, xy, yy.
     """
     random = np.random.default_rng(seed)
     noisy = seen.colors + random.normal(0.0, eye.noise, seen.colors.shape)
     # A Gaussian of the variance of the window.
     spread = WINDOW / 60 * eye.pixels_per_degree / math.sqrt(12)
-    # Derivatives of Gaussians are alike in all directions, unlike differences of pixels.
-    down, right = (
-        gaussian_filter(noisy, (1.0, 1.0, 0.0), order)
-        - gaussian_filter(noisy, (spread, spread, 0.0), order)
-        for order in ((1, 0, 0), (0, 1, 0))
-    )
-    products = ((right, right), (right, down), (down, down))
-    return np.stack([gaussian_filter((a * b).sum(axis=2), spread) for a, b in products], axis=2)
+    channels = np.empty((*noisy.shape[:2], CHANNELS, 3))
+    for channel, fine in enumerate((1.0, max(1.0, spread / math.sqrt(2)))):
+        # Derivatives of Gaussians are alike in all directions, unlike differences of pixels.
+        down, right = (
+            gaussian_filter(noisy, (fine, fine, 0.0), order)
+            - gaussian_filter(noisy, (spread, spread, 0.0), order)
+            for order in ((1, 0, 0), (0, 1, 0))
+        )
+        for column, (a, b) in enumerate(((right, right), (right, down), (down, down))):
+            channels[..., channel, column] = gaussian_filter((a * b).sum(axis=2), spread)
+    return channels
 
 
 def along_grain(tensor: Array) -> Array:

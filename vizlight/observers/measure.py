@@ -30,6 +30,7 @@ from vizlight.observers.figures import (
     Value,
 )
 from vizlight.observers.lines import (
+    CHANNELS,
     SEEN,
     above_ground,
     ahead_of,
@@ -80,10 +81,9 @@ PIECE = 8.0
 NO_THING = -1
 #: Least number of strokes that are asked for their sense.
 STROKES = 8
-#: Tolerance of an answer that is right, and its share by chance: degrees of directions, degrees of
-#: normals (of the eye's direction as the answer, sin^2), share of a bar, share of the ranks.
+#: Tolerance of an answer that is right: degrees of directions, degrees of normals, share of a bar,
+#: share of the ranks.
 TOLERANCE = {"direction": 15.0, "heading": 15.0, "shape": 20.0, "value": 0.1, "rank": 0.15}
-GUESSED = {"direction": 1 / 6, "heading": 1 / 6, "shape": 0.117, "value": 0.2, "rank": 0.3}
 #: Figures of the questions that are answered by matched colours.
 MATCHED: dict[str, type[Figure]] = {
     "direction": Direction,
@@ -109,8 +109,8 @@ class SeenPlaces:
         Colours that a reader has.
     unit : ndarray, shape (M,)
         Size of a pixel in the unit of the mesh.
-    grain : ndarray of complex, shape (M,)
-        Grain of the picture, :func:`vizlight.observers.lines.along_grain`.
+    grain : ndarray of complex, shape (M, CHANNELS)
+        Grain of the picture in each channel, :func:`vizlight.observers.lines.along_grain`.
     course : ndarray, shape (M,)
         Directions of single tangents in the picture in degrees, from right toward up.
     thing : ndarray of int, shape (M,)
@@ -216,7 +216,7 @@ def measure(
     thing = _things(pixels, parts, lines, glyphs, eye)
     random = np.random.default_rng(seed)
     has_marks = any(part.by_form and part.has_tangents for part in parts)
-    grain = grain_of(seen, eye, seed) if has_marks else np.zeros_like(seen.colors)
+    grain = grain_of(seen, eye, seed) if has_marks else np.zeros((height, width, CHANNELS, 3))
     has = _Seen(pixels, number, camera, eye, thing, *_as_things(seen, grain, pixels, thing), random)
     chosen = np.sort(random.permutation(len(pixels.row))[:samples])
     groups = []
@@ -295,7 +295,8 @@ def _as_things(
     whole = thing != NO_THING
     row, column = pixels.row[whole], pixels.column[whole]
     group = np.unique(thing[whole], return_inverse=True)[1]
-    grain[row, column] = means(grain[row, column], group)[group]
+    own = grain[row, column].reshape(len(row), 3 * CHANNELS)
+    grain[row, column] = means(own, group)[group].reshape(len(row), CHANNELS, 3)
     return seen.pooled(row, column, group), grain
 
 
@@ -469,7 +470,7 @@ class _PictureReader:
         bits = readers.bits_told(readings)
         right = error <= TOLERANCE[question]
         other = np.concatenate([reading.other_error for reading in readings])
-        guessed = max(GUESSED[question], float((other <= TOLERANCE[question]).mean()))
+        guessed = max(MATCHED[question].guessed, float((other <= TOLERANCE[question]).mean()))
         unit = np.concatenate([p.unit for p in groups])
         chance = MATCHED[question].chance
         unread = bits < FLOOR or float(np.median(error)) > NEAR * chance
@@ -478,6 +479,7 @@ class _PictureReader:
             self.scale = _scale(question, lengths, unit, right & (not unread), guessed)
         return {
             "bits": bits,
+            "most": readers.most_told(readings),
             "readable": 0.0 if unread else _beyond_chance(right, guessed),
             "samples": len(error),
             "reason": self._reason(question, groups, lengths) if unread else "",
@@ -513,22 +515,18 @@ class _PictureReader:
         some = [p for p in self.groups if p.part.by_form and p.here.has_one_tangent]
         by_form = _kept(some, lambda p: p.here.valid)
         start = float(self.random.uniform(0.0, 180.0)) if by_hue or by_form else 0.0
-        ways = []
-        for groups in (by_hue, by_form):
-            groups = _kept(groups, lambda p: readers.in_picture(p.here) > readers.SHORTEST)
-            if not groups:
-                continue
-            ways.append(
-                (
-                    groups,
-                    [
-                        readers.read_grain(p.grain, p.course, start)
-                        if p.part.by_form
-                        else readers.read_direction(p.here, self.middle, p.colors, start)
-                        for p in groups
-                    ],
-                )
-            )
+        by_hue, by_form = (
+            _kept(groups, lambda p: readers.in_picture(p.here) > readers.SHORTEST)
+            for groups in (by_hue, by_form)
+        )
+        # Whether marks are fine or coarse is seen by the whole picture.
+        ways = [
+            (by_form, [readers.read_grain(p.grain[:, i], p.course, start) for p in by_form])
+            for i in range(CHANNELS if by_form else 0)
+        ]
+        if by_hue:
+            hues = [readers.read_direction(p.here, self.middle, p.colors, start) for p in by_hue]
+            ways.insert(0, (by_hue, hues))
         if not ways:
             return None
         groups, readings = max(ways, key=lambda way: readers.bits_told(way[1]))
@@ -659,7 +657,8 @@ class _PictureReader:
         return {
             "spearman": 0.0 if unread else readers.rank_correlation(signal, magnitude),
             "bits": bits,
-            "readable": 0.0 if unread else _beyond_chance(right, GUESSED["rank"]),
+            "most": readers.most_ranked(len(signal)),
+            "readable": 0.0 if unread else _beyond_chance(right, Figure.guessed),
             "samples": len(signal),
             "reason": self._reason("rank", groups, none) if unread else "",
         }

@@ -236,6 +236,12 @@ def bits_told(readings: list[Reading]) -> float:
     )
 
 
+def most_told(readings: list[Reading]) -> float:
+    """Return the bits of readers who are sure of the right candidate at each place."""
+    bits = [math.log2(reading.candidates) for reading in readings]
+    return float(np.average(bits, weights=[len(reading.error) for reading in readings]))
+
+
 def read_direction(sample: Sample, middle: Array, colors: Colors, start: float) -> Reading:
     """Return the answers of a reader who matches hues with a disc of directions.
 
@@ -596,7 +602,7 @@ def mutual_information(magnitude: Array, signal: Array) -> float:
         # Quantiles that coincide, as of many equal values, bound one class.
         np.searchsorted(np.unique(np.quantile(x, np.linspace(0, 1, k + 1)[1:-1])), x)
         for x, k in (
-            (magnitude, CLASSES), (signal, min(SIGNALS, max(2, len(signal) // EACH))),
+            (magnitude, CLASSES), (signal, _signals(len(signal))),
         )
     )  # fmt: skip
     joint = np.bincount(rows * SIGNALS + columns, minlength=CLASSES * SIGNALS)
@@ -608,13 +614,23 @@ def mutual_information(magnitude: Array, signal: Array) -> float:
     return max(0.0, bits - classes / (2 * len(magnitude) * math.log(2)))
 
 
+def most_ranked(count: int) -> float:
+    """Return the bits of a signal that ranks a magnitude at some number of places."""
+    return math.log2(min(CLASSES, _signals(count)))
+
+
+def _signals(count: int) -> int:
+    """Return the number of classes of a signal at some number of places."""
+    return min(SIGNALS, max(2, count // EACH))
+
+
 def ranked_error(magnitude: Array, signal: Array) -> Array:
     """Return how far ranks of a magnitude are from the answers of a calibrated reader of a signal.
 
     The reader answers with the median rank of the places with a signal in the same class.
     """
     rank = (ranks(magnitude) - 0.5) / len(magnitude)
-    count = min(SIGNALS, max(2, len(signal) // EACH))
+    count = _signals(len(signal))
     bounds = np.unique(np.quantile(signal, np.linspace(0, 1, count + 1)[1:-1]))
     label = np.searchsorted(bounds, signal)
     answers = np.zeros(len(bounds) + 1)

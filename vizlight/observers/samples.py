@@ -317,7 +317,8 @@ class SeenMesh:
         if isinstance(self.cells, DrawnTriangles):
             around = near(self.mesh, self.cells, cells, self.light)
             light = around.light
-            if self.cells.grid is not None and are_of_cells(self.mesh, self.light):
+            others = self.cells.beside or self.cells.grid is not None
+            if others and are_of_cells(self.mesh, self.light):
                 light = _with_means(light, self.mesh, around.origin, self.path, self.scene)
             mesh, light = moved(around.mesh, light, self.matrix)
         elif are_of_cells(self.mesh, self.light):

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import (
+    VTK_LINE,
     VTK_POLYGON,
     VTK_QUAD,
     VTK_TRIANGLE,
@@ -218,20 +219,24 @@ class DrawnTriangles(DrawnCells):
     ----------
     surface : vtkPolyData
         Surface; its strips are split into triangles after all polygons.
+    least : int, default: 3
+        Number of corners of the polygons that are kept. Those of 2 have no triangles.
     """
 
-    def __init__(self, surface: vtkPolyData) -> None:
+    def __init__(self, surface: vtkPolyData, least: int = TRIANGLE) -> None:
         before = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
         cells: Indices | int = before
         if surface.GetNumberOfStrips():
             surface, cells = _without_strips(surface)
-        kept = _are_of(surface.GetPolys(), TRIANGLE)
+        kept = _are_of(surface.GetPolys(), least)
         if not kept.all():
             kept = np.broadcast_to(kept, surface.GetNumberOfPolys())
             cells = (cells if isinstance(cells, np.ndarray) else cells + np.arange(len(kept)))[kept]
             surface = bare_faces(surface, kept)
         super().__init__(surface.GetPolys(), TRIANGLE, cells)
         self._points = surface.GetPoints()
+        #: Whether the mesh may have cells that are none of the polygons.
+        self.beside = before > 0
         #: Grid with hidden cells that they are the cells of, if any.
         self.grid: Dataset | None = None
 
@@ -239,8 +244,8 @@ class DrawnTriangles(DrawnCells):
     def of(cls, mesh: Dataset) -> DrawnTriangles | None:
         """Return the triangles of a mesh with faces in memory or in rows, else None.
 
-        It is a surface, a grid of plain polygons alone, or one of a single layer of points. Of the
-        latter alone VTK leaves hidden cells out: their triangles are of one point.
+        It is a surface, a grid of plain polygons, segments among them, or one of a single layer of
+        points. Of the latter alone VTK leaves hidden cells out: their triangles are of one point.
         """
         if isinstance(mesh, vtkPolyData):
             return cls(mesh) if has_faces(mesh) else None
@@ -253,16 +258,21 @@ class DrawnTriangles(DrawnCells):
         if not isinstance(mesh, vtkUnstructuredGrid):
             return None
         kinds = {*as_numpy(mesh.GetDistinctCellTypesArray()).tolist()}
-        if not kinds or kinds - {VTK_TRIANGLE, VTK_QUAD, VTK_POLYGON}:
+        faces = {VTK_TRIANGLE, VTK_QUAD, VTK_POLYGON}
+        if not kinds & faces or kinds - faces - {VTK_LINE}:
             return None
         surface = vtkPolyData()
         surface.SetPoints(mesh.GetPoints())
         surface.SetPolys(grid_cells(mesh))
-        return cls(surface)
+        triangles = cls(surface, SEGMENT)
+        triangles.beside = VTK_LINE in kinds
+        return triangles
 
     def around(self, points: Indices) -> Indices:
         """Return the polygons that have a corner among some points, but for hidden ones."""
         polygon = super().around(points)
+        if self.beside:
+            polygon = polygon[self.sizes(polygon) > SEGMENT]
         return polygon[~self._unseen(polygon)]
 
     def _unseen(self, polygon: Indices) -> Bools:

@@ -84,6 +84,11 @@ def plotter_of(fill, mesh, name, view):
     return plotter
 
 
+def in_bits(figure):
+    """Return the bits of a figure beside the most."""
+    return f"{figure.bits:.2f} of {figure.most:.1f}"
+
+
 def rows():
     """Yield the rows of the table."""
     for field, load in FIELDS.items():
@@ -103,8 +108,8 @@ def rows():
                 right = f"{sense.told:.0%} and {sense.wrongly:.0%}"
                 told = "chance" if sense.unreadable else right
             yield (
-                field, marks, f"{way.bits:.2f}", f"{way.median:.1f}°", told,
-                "none" if speed is None else f"{speed.bits:.2f}",
+                field, marks, in_bits(way), f"{way.median:.1f}°", told,
+                "none" if speed is None else in_bits(speed),
             )  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """Compare the answers of people with the meter: ``python compare.py answers.csv [...]``.
 
 It prints for each question and kind of picture the median error, its chance and the median time,
-and the rank correlation of the meter's bits with the share of right answers over all trials.
+and the rank correlation of the meter's score with the share of right answers over all trials.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ def rows_of(paths, trials):
 
 
 def compared(rows):
-    """Return the lines of the table, and the rank correlation of bits and right answers."""
-    lines, bits, shares = [], [], []
+    """Return the lines of the table, and the rank correlation of scores and right answers."""
+    lines, scores, shares = [], [], []
     for question, chance in CHANCE.items():
         for kind in ("vizlight", "plain"):
             own = [r for r in rows if (r[0]["question"], r[0]["kind"]) == (question, kind)]
@@ -66,9 +66,9 @@ def compared(rows):
                 lines.append((question, kind, error, chance, seconds, meter, len(own)))
     for number in sorted({r[0]["trial"] for r in rows}):
         own = [r for r in rows if r[0]["trial"] == number]
-        bits.append(own[0][0]["bits"])
+        scores.append(own[0][0]["score"])
         shares.append(np.mean([r[1] <= RIGHT[r[0]["question"]] for r in own]))
-    return lines, rank_correlation(np.array(bits), np.array(shares))
+    return lines, rank_correlation(np.array(scores), np.array(shares))
 
 
 def main(arguments=None):
@@ -83,7 +83,7 @@ def main(arguments=None):
         table.add_row(*(f"{x:.3g}" if isinstance(x, float) else str(x) for x in line))
     Console().print(table)
     print(
-        f"rank correlation of the meter's bits with the share of right answers: {correlation:.2f}"
+        f"rank correlation of the meter's score with the share of right answers: {correlation:.2f}"
     )
 
 

@@ -219,7 +219,8 @@ def trials():
             figure = getattr(figures, question)
             yield {
                 "question": question, "data": name, "kind": "vizlight" if ours else "plain",
-                "right": right, "bits": figure.bits, "readable": figure.readable,
+                "right": right, "bits": figure.bits, "score": figure.score,
+                "readable": figure.readable,
                 "picture": picture_of(np.asarray(image)), "key": key,
             }  # fmt: skip
 
