@@ -732,3 +732,19 @@ def test_straight_curves_of_obj_are_lines_and_others_are_noted(tmp_path):
     (tmp_path / "a.obj").write_text(text.replace("deg 1", "deg 2"))
     with pytest.warns(UserWarning, match="free-form curves and surfaces .* are left out"):
         vizlight.read(tmp_path / "a.obj")
+
+
+def test_points_of_no_cell_that_are_far_from_all_cells_are_left_out(tmp_path):
+    grid = pv.ImageData(dimensions=(3, 3, 3)).cast_to_unstructured_grid()
+    grid["T"] = np.arange(27.0)
+    more = pv.UnstructuredGrid(grid.cells, grid.celltypes, np.append(grid.points, [[9, 0, 0]], 0))
+    more["T"] = np.arange(28.0)
+    more.save(tmp_path / "a.vtu")
+    with pytest.warns(UserWarning, match="1 of its 28 points are in no cell and left out"):
+        mesh = vizlight.read(tmp_path / "a.vtu")
+    assert mesh.bounds == grid.bounds
+    np.testing.assert_array_equal(mesh["T"], grid["T"])
+    # One among the cells stays.
+    more.points[-1] = 1
+    more.save(tmp_path / "b.vtu")
+    assert vizlight.read(tmp_path / "b.vtu").n_points == 28

@@ -502,6 +502,10 @@ def _whole(
     elif suffix in PIECES:
         # Pieces have cells of their neighbours, and points of their own along the seams.
         mesh = normals.welded(joining.without_ghosts(mesh))
+    elif isinstance(mesh, pv.UnstructuredGrid) and not overlays and _has_points_outside(mesh):
+        count = mesh.n_points
+        mesh = mesh.remove_unused_points()
+        notes.append(f"{count - mesh.n_points} of its {count} points are in no cell and left out")
     for path in overlays:
         if path.suffix.lower() in (*cf_grids.SUFFIXES, *georeference.SUFFIXES):
             step = time if path.suffix.lower() in cf_grids.SUFFIXES else None
@@ -536,6 +540,16 @@ def _finish_gltf(mesh: pv.DataSet) -> list[str]:
     for name in shapes:
         del mesh.point_data[name]
     return [f"shapes of its animation are left out: {', '.join(shapes)}"] if shapes else []
+
+
+def _has_points_outside(mesh: pv.UnstructuredGrid) -> bool:
+    """Return whether points of no cell are outside of the box around all cells."""
+    corners = np.zeros(mesh.n_points, np.bool_)
+    corners[mesh.cell_connectivity] = True
+    if not corners.any() or corners.all():
+        return False
+    low, high = np.asarray(mesh.points[corners]).min(axis=0), mesh.points[corners].max(axis=0)
+    return bool(np.any(mesh.points < low) or np.any(mesh.points > high))
 
 
 def _name_in_one_line(mesh: pv.DataSet) -> None:

@@ -15,7 +15,7 @@ from vizlight.maps import TWO_SIDED
 FENCE, MOST_OUTSIDE, LEAST_FREED = 4.5, 0.1, 0.32
 #: Ratio of the 98th percentile to the median from which lengths have a logarithmic bar, and the
 #: ratio of its ends at most.
-SKEWED, DECADES = 5.0, 100.0
+SKEWED, DECADES = 10.0, 100.0
 #: Share of the values that are one value far outside, from which it stands for a region apart.
 APART = 0.01
 #: Percentile of the values of a scan from which on they are white.

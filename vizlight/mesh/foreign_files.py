@@ -423,10 +423,11 @@ def _triangles(path: Path) -> pv.PolyData | None:
     words = path.read_bytes().split()
     n_points = int(words[1])
     end = 2 + 6 * n_points
-    rows: Array = np.array(words[2:end], dtype=np.float64).reshape(n_points, 6)
-    faces: Indices = np.array(words[end + 4 :], dtype=np.intp).reshape(int(words[end + 1]), 3)
+    rows = np.array(words[2:end], dtype=np.float64).reshape(n_points, 6)
+    faces = np.array(words[end + 4 :], dtype=int).reshape(-1, 3)
     # The normals point in or out, by the program, and are left out.
-    return pv.PolyData.from_regular_faces(rows[:, :3].copy(), faces)
+    surface: pv.PolyData = pv.PolyData.from_regular_faces(rows[:, :3].copy(), faces)
+    return surface
 
 
 def _lidar(path: Path) -> pv.PolyData:
