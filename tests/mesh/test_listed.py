@@ -205,3 +205,25 @@ def test_all_faces_of_a_cube_are_one_surface():
     assert off.max() < 10
     face = vizlight.read(data, at={"nf": 4, "lev": 1})
     np.testing.assert_array_equal(np.unique(face["t"]), 136 + np.arange(9))
+
+
+@pytest.mark.parametrize("form", ["contiguous", "indexed", "single"])
+def test_trajectories_are_lines(form):
+    lon, lat = np.array([10.0, 20, 30, 170, -170, -160]), np.array([0.0, 1, 3, 5, 5, 7])
+    file = xr.Dataset(
+        {"T": ("obs", np.arange(6.0))},
+        {
+            "lon": ("obs", lon, {"units": "degrees_east"}),
+            "lat": ("obs", lat, {"units": "degrees_north"}),
+        },
+        {"featureType": "trajectory"},
+    )
+    if form == "contiguous":
+        file["count"] = ("track", [3, 3], {"sample_dimension": "obs"})
+    elif form == "indexed":
+        file["track"] = ("obs", [7, 7, 7, 2, 2, 2], {"instance_dimension": "tracks"})
+    lines = [cell.point_ids for cell in vizlight.look(file).mesh.cell]
+    # Longitudes begin behind the widest gap, so that the date line is inside.
+    assert sorted(lines) == ([[0, 1, 2], [3, 4, 5]] if form != "single" else [[0, 1, 2, 3, 4, 5]])
+    del file.attrs["featureType"]
+    assert not vizlight.look(file).mesh.n_lines

@@ -55,12 +55,12 @@ def test_a_neuron_lies_across_the_picture(path):
 def test_crowded_branches_are_thin_and_keep_their_gaps(tmp_path):
     rows = ["1 1 0 0 0 1 -1", "2 3 100 0 0 1 1"]
     angles = np.linspace(0, 2 * np.pi, 400, endpoint=False)
-    ends = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(400)])
+    ends = np.column_stack([np.cos(angles), np.sin(angles), 20 * np.cos(3 * angles)])
     rows += [f"{i + 3} 3 {x:.4f} {y:.4f} {z:.4f} 1 1" for i, (x, y, z) in enumerate(ends)]
     (tmp_path / "b.swc").write_text("\n".join(rows))
     layer = vizlight.look(tmp_path / "b.swc").drawing.layers[0]
     assert layer.keywords["halo"] == "black"
     (tmp_path / "c.swc").write_text("\n".join(rows[:2]))
     layer = vizlight.look(tmp_path / "c.swc").drawing.layers[0]
-    assert "halo" not in layer.keywords
+    assert layer.keywords["halo"] is False
     assert layer.keywords["line_width"] == 6

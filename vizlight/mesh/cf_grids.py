@@ -604,7 +604,8 @@ class _Reader:
         scale, unit = self._unit(of.x, of.y)
         x, y = (scale * np.asarray(self.file[name].values, np.float64) for name in (of.x, of.y))
         mesh, kept = listed.points(x, y, degrees=unit == georeference.DEGREE)
-        is_earth = isinstance(mesh, pv.PolyData) and unit == georeference.DEGREE
+        tracks = listed.tracks(self.file, of.dim) if isinstance(mesh, pv.PolyData) else None
+        is_earth = isinstance(mesh, pv.PolyData) and unit == georeference.DEGREE and tracks is None
         around = listed.around_earth(x[kept], y[kept]) if is_earth else None
         words = f"x {of.x!r} and y {of.y!r} of each value"
         if around is not None:
@@ -615,7 +616,10 @@ class _Reader:
                 of.dim: (mesh.point_data, lambda rows: faces.at_points(around.rows(rows[kept])))
             }
         else:
-            if isinstance(mesh, pv.PolyData):
+            if isinstance(mesh, pv.PolyData) and tracks is not None:
+                mesh = listed.with_tracks(mesh, tracks[kept])
+                self.said.notes.append(f"{mesh.n_lines} tracks through the points")
+            elif isinstance(mesh, pv.PolyData):
                 self.said.notes.append(f"points, since no cells of {of.dim!r} are known")
             rows_of = {of.dim: (mesh.point_data, lambda rows: rows[kept])}
         return self._with_values(mesh, rows_of, (unit, words))

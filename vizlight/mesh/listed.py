@@ -20,6 +20,8 @@ CELLS = ("cell", "corner")
 FEWEST, MOST_JOINED, TALL, HOLE = 100, 1_000_000, 150.0, 2.0
 #: Decimals of corners that are one, in degrees or in metres.
 _SAME = 6
+#: Step in longitude from which a track goes on at the other side of a map.
+HALF_WAY = 180.0
 
 
 @dataclass(frozen=True)
@@ -296,3 +298,49 @@ def seem_radians(x: Array, y: Array) -> bool:
     """
     around = 0.9 * 2 * math.pi < np.ptp(x) < 1.01 * 2 * math.pi
     return bool(around and 0.9 * math.pi < np.ptp(y) and np.abs(y).max() < 1.01 * math.pi / 2)
+
+
+def tracks(file: Foreign, dim: str) -> Indices | None:
+    """Return the number of the track of each value of a list, None if there are no tracks.
+
+    These are the trajectories of the CF conventions, as ragged arrays, contiguous or with indices,
+    or a single one.
+
+    Parameters
+    ----------
+    file : xarray.Dataset
+        Dataset.
+    dim : str
+        Dimension of the list.
+    """
+    if str(file.attrs.get("featureType", "")).lower() not in ("trajectory", "trajectoryprofile"):
+        return None
+    size = int(file.sizes[dim])
+    for variable in file.variables.values():
+        if variable.attrs.get("sample_dimension") == dim:
+            counts = np.asarray(variable.values).astype(np.intp)
+            if counts.sum() == size:
+                return np.repeat(np.arange(len(counts)), counts)
+        has_id = variable.attrs.get("cf_role") == "trajectory_id"
+        if variable.dims == (dim,) and (has_id or "instance_dimension" in variable.attrs):
+            numbers: Indices = np.unique(variable.values, return_inverse=True)[1]
+            return numbers
+    return np.zeros(size, np.intp)
+
+
+def with_tracks(points: pv.PolyData, numbers: Indices) -> pv.PolyData:
+    """Return points with lines along their tracks, which end where they leave the map.
+
+    Parameters
+    ----------
+    points : pyvista.PolyData
+        Points, in degrees or another unit.
+    numbers : ndarray of int, shape (N,)
+        Number of the track of each point.
+    """
+    order = np.argsort(numbers, kind="stable")
+    steps = np.abs(np.diff(points.points[order, 0]))
+    ends = np.flatnonzero((np.diff(numbers[order]) != 0) | (steps > HALF_WAY)) + 1
+    parts = [part for part in np.split(order, ends) if len(part) > 1]
+    lines = [number for part in parts for number in (len(part), *part.tolist())]
+    return pv.PolyData(points.points, lines=lines)

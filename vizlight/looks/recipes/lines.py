@@ -209,6 +209,10 @@ def _pen(case: Case, camera: Step) -> Keywords:
     crowd = _crowd(places / pixel, steps / pixel, camera)
     widest = min(widest, CROWDED * SQUARE / max(crowd, 1e-9))
     thinnest = THINNEST * case.width
+    if case.contents.flat_axis is not None:
+        # None is in front.
+        width = np.clip(widest, case.width / 2, WIDEST)
+        return {"line_width": round(float(width), 1), "halo": False}
     pen: Keywords = {"line_width": round(float(np.clip(widest, thinnest, WIDEST)), 1)}
     return pen | {"halo": "black"} if widest < thinnest else pen
 
@@ -292,7 +296,9 @@ def points(case: Case) -> Drawing:
     if array is not None:
         # Light on balls would change the colours by which they are read.
         drawn["lighting"] = False
-    lit = case.lit(mesh, scene)
+    # Points alone have no normals to light.
+    has_normals = mesh.run().point_data.active_normals is not None
+    lit = case.lit(mesh, scene) if has_normals else mesh
     notes = [note] if note else []
     return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=mesh)
 

@@ -128,7 +128,7 @@ def _with_isolines(case: Case, drawing: Drawing) -> Drawing:
     """Return a drawing of smooth values on a solid with isolines at the numbers of the bar.
 
     Others are returned as they are: where isolines would be short or close, and other surfaces,
-    whose shape they would hide.
+    which would lose their shape.
     """
     array, mesh, (bar,) = case.needed_array, drawing.layers[0].mesh, drawing.keys
     table = bar.get("cmap")
