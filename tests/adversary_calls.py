@@ -265,7 +265,7 @@ OWN = {
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "creases.creases": {"surface": ball},
     "creases.borders": {"surface": ball},
-    "fills.without_air": {"volume": block, "name": "v"},
+    "cutaways.cut_open": {"volume": block, "name": "v"},
     "molecules.backbone": {"atoms": chain},
     "montages.side_by_side": {"volume": block, "name": "v"},
     "molecules.atoms_in": {"volume": orbital},

@@ -45,6 +45,7 @@ from vizlight.mesh import (
 )
 from vizlight.mesh.blocks import DataSetT
 from vizlight.mesh.creases import borders, creases
+from vizlight.mesh.cutaways import cut_open
 from vizlight.mesh.derived import (
     check_dataset,
     layer_of,
@@ -54,7 +55,7 @@ from vizlight.mesh.derived import (
     warped,
     with_vectors,
 )
-from vizlight.mesh.fills import without_air, without_fills
+from vizlight.mesh.fills import without_fills
 from vizlight.mesh.molecules import atoms_in, backbone
 from vizlight.mesh.montages import side_by_side
 from vizlight.mesh.subdivision import simplices
@@ -69,9 +70,9 @@ except ImportError:  # on Windows
 
 
 __all__ = [
-    "FileError", "atoms_in", "backbone", "borders", "creases", "layer_of", "layers", "read",
-    "read_parts", "side_by_side", "stretched", "surface_of", "warped", "with_vectors",
-    "without_air", "without_fills", "write_mesh",
+    "FileError", "atoms_in", "backbone", "borders", "creases", "cut_open", "layer_of", "layers",
+    "read", "read_parts", "side_by_side", "stretched", "surface_of", "warped", "with_vectors",
+    "without_fills", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.

@@ -88,37 +88,3 @@ def test_arrays_of_a_grid_of_a_file_are_searched_once(tmp_path, monkeypatch):
         look = vizlight.look(data)
     assert names == ["a", "b"]
     assert look.drawing.keys[0]["clim"] == (1.0, 13.0)
-
-
-def head(size=40, air=0.0):
-    """Scan of a ball with a dark shell under its skin, a cavity, and a neck that the scan cuts."""
-    scan = pv.ImageData(dimensions=(size, size, size), origin=(-(size - 1) / 2,) * 3)
-    radius = np.linalg.norm(scan.points, axis=1)
-    values = np.select([radius < 3, radius < 12, radius < 13, radius < 15], [0, 100, 0, 90], 0)
-    neck = (np.linalg.norm(np.asarray(scan.points)[:, :2], axis=1) < 8) & (scan.points[:, 2] < -8)
-    values[neck & (radius > 12)] = 80
-    scan["T1"] = values + air + np.arange(scan.n_points) % 5
-    return scan, radius
-
-
-@pytest.mark.parametrize("air", [0.0, -1000.0])
-def test_the_air_around_a_body_is_missing_and_its_cavities_stay(air):
-    scan, radius = head(air=air)
-    before = np.array(scan["T1"])
-    missing = np.isnan(files.without_air(scan, "T1")["T1"])
-    np.testing.assert_array_equal(scan["T1"], before)
-    assert not missing[before > air + 50].any()
-    assert not missing[radius < 12.5].any()
-    above = np.asarray(scan.points)[:, 2] > -8
-    assert missing[above & (radius > 16.5)].all()
-    # What stands out to its sides is no body in air.
-    filled = scan.copy()
-    filled["T1"] = np.arange(scan.n_points) % 97.0
-    assert files.without_air(filled, "T1") is filled
-
-
-def test_air_is_that_of_scans_alone():
-    with pytest.raises(TypeError, match=r"volume: expected a pyvista\.ImageData, got"):
-        files.without_air(pv.Sphere(), "T1")
-    with pytest.raises(ValueError, match="name: expected a point array"):
-        files.without_air(head()[0], "T2")

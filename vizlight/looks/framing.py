@@ -31,6 +31,8 @@ AZIMUTHS, ALTITUDES = range(-155, 205, 45), (20.0, 35.0)
 DIAGONALS, ABOVE_BOX = range(-130, 230, 90), (30.0,)
 #: How much more a view counts in which all creases are seen.
 CREASED = 0.3
+#: Power of the length of a body across the picture, over that in space, by which a view counts.
+ACROSS = 2
 #: How much more a view counts in which vectors run to the right.
 RIGHTWARD = 0.1
 #: Pixels along each side of the picture in which self-occlusion is counted.
@@ -339,9 +341,18 @@ def _around(
         if whole > 0:
             front = _in_front(np.concatenate([middles, places]), len(middles), way)
             score *= 1 + CREASED * float(lengths[front].sum()) / whole
-        scores.append((score, way))
+        scores.append((score * _length_across(corners, areas, way) ** ACROSS, way))
     best = max(scores, key=lambda pair: pair[0])[1]
     return Viewpoint(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
+
+
+def _length_across(corners: Array, areas: Array, way: Array) -> float:
+    """Return the length of triangles across the picture, over that in space: the spread of each."""
+    middles = corners.mean(axis=1)
+    spread = np.cov(middles.T, aweights=areas) if areas.sum() > 0 else np.eye(3)
+    flat = np.stack(_plane(way))
+    across, whole = (np.linalg.eigvalsh(each)[-1] for each in (flat @ spread @ flat.T, spread))
+    return float(np.sqrt(across / whole)) if whole > 0 else 1.0
 
 
 def _of_points(points: Array, vectors: Array | None = None) -> Viewpoint:

@@ -7,20 +7,14 @@ from collections.abc import Sequence
 
 import numpy as np
 import pyvista as pv
-import scipy
 
 from vizlight import _check
 from vizlight._types import Raw
-from vizlight.mesh import meaning, records
+from vizlight.mesh import meaning
 from vizlight.mesh.blocks import DataSetT
 
 #: Values that stand for none in files that do not say so, beside those whose digits are all 9.
 _LIMITS = {-(2.0**15), 1 - 2.0**15, 2.0**15 - 1, 2.0**16 - 1, -(2.0**31), 2.0**31 - 1}
-#: Share of the range of a scan up to which it is dark, share of its sides that are, and values that
-#: are looked at.
-DARK, MOSTLY, SAMPLE = 0.1, 0.5, 100_000
-#: Steps along the longest side of a scan in which gaps of a body are closed, and half their width.
-COARSE, GAP = 90, 3
 #: Least size of a value that is none, as 1e20, 9.97e36 and 3.4e38 are, and its least multiple of
 #: all others where it stands once: masses of stars are as large.
 _HUGE, _ALONE = 1e15, 1e9
@@ -174,67 +168,3 @@ def without_fills(mesh: DataSetT, nodata: float | None = None, /) -> DataSetT:
         said.notes += notes
         meaning.attach(known, said)
     return known
-
-
-def without_air(volume: pv.ImageData, name: str, /) -> pv.ImageData:
-    """Return a scan of a body in which the values of the air around it are missing.
-
-    Air is what is dark and connects to the sides of the volume: cavities stay, and narrow gaps.
-
-    Parameters
-    ----------
-    volume : pyvista.ImageData
-        Scan, which is not changed.
-    name : str
-        Name of the point array of its values.
-
-    Returns
-    -------
-    pyvista.ImageData
-        Copy with NaN in the air; the scan itself where its sides are not mostly dark: as their
-        median, by less than a tenth of what is between that and the brightest values.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is no image, or has no such array of one number per point.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import pyvista as pv
-    >>> from vizlight import files
-    >>> scan = pv.ImageData(dimensions=(9, 9, 9))
-    >>> scan["T1"] = 100.0 * (np.linalg.norm(scan.points - 4, axis=1) < 3)
-    >>> int(np.isnan(files.without_air(scan, "T1")["T1"]).sum())
-    636
-    """
-    _check.instance("volume", volume, pv.ImageData, "a pyvista.ImageData")
-    name = _check.text("name", name, expected="the name of a point array")
-    rows = np.asarray(_check.floats("name", records.scalars_of(volume, "name", name)))
-    values = rows.reshape(volume.dimensions, order="F")
-    sides = np.zeros(values.shape, np.bool_)
-    for axis in range(3):
-        np.moveaxis(sides, axis, 0)[[0, -1]] = True
-    ground = np.nanmedian(values[sides])
-    brightest = np.nanpercentile(rows[:: len(rows) // SAMPLE + 1], 99)
-    reach = DARK * (brightest - ground)
-    if not reach > 0 or np.mean(np.abs(values[sides] - ground) <= reach) < MOSTLY:
-        return volume
-    is_dark = values <= ground + reach
-    # Gaps of a few steps, as between skin and skull where a scan ends, are none of the air.
-    step = max(1, max(values.shape) // COARSE)
-    coarse = is_dark[::step, ::step, ::step]
-    part, count = scipy.ndimage.label(
-        scipy.ndimage.binary_erosion(coarse, None, GAP, border_value=1)
-    )
-    is_air = np.zeros(count + 1, np.bool_)
-    is_air[np.unique(part[sides[::step, ::step, ::step]])] = True
-    is_air[0] = False
-    around = scipy.ndimage.binary_dilation(is_air[part], iterations=GAP + 1, mask=coarse)
-    for axis, size in enumerate(values.shape):
-        around = np.take(around, np.arange(size) // step, axis=axis)
-    around = scipy.ndimage.binary_dilation(around & is_dark, iterations=step, mask=is_dark)
-    result = volume.copy(deep=False)
-    result.point_data[name] = np.where(around, np.nan, values).ravel(order="F")
-    return result

@@ -1,4 +1,4 @@
-"""Recipes of the values in a volume: the isosurface that stands out, or three slices."""
+"""Recipes of the values in a volume: the isosurface that stands out, a cut body, or slices."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight.draw.margins import parted
 from vizlight.looks import levels
 from vizlight.looks.contents import Contents
-from vizlight.looks.framing import eye_around
+from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around
 from vizlight.looks.recipes import fields, lines, surfaces
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
@@ -38,9 +38,13 @@ VOXELS, MOST_CLOSED = 30, 0.4
 AIR, BONE, NEAR_AIR, MUCH_AIR, BONES = -1000.0, 300.0, 50.0, 0.05, (0.002, 0.3)
 #: Largest share of the brightest value by which those of a scan that is resampled are below 0.
 RINGING = 0.1
-#: Share of a scan that has its lowest value from which on an organ was cut out of it, and the
-#: number of values that are looked at.
-CUT_OUT, SAMPLE = 0.5, 100_000
+#: Least share of its box that what is above the lowest value of a scan fills where it is cut open,
+#: the points along each axis by which that is found, and the number of values that are looked at.
+COMPACT, STEPS, SAMPLE = 0.25, 50, 100_000
+#: Colour of the skin.
+SKIN = {"paper": "#d9cabd", "dark": "#d9cabd"}
+#: Direction toward the eye that sees a face, in the axes of a body.
+FACE = (0.5, 0.75, 0.45)
 #: Largest share of the ends of values within which their quartiles lie where 0 is their ground, and
 #: least ratio of the numbers of values beyond a level below and above it.
 GROUND, LESSER_SIDE = 0.15, 0.1
@@ -82,14 +86,14 @@ def isosurface(case: Case) -> Drawing:
     """Draw the isosurface through the steepest places, or three slices where none is good.
 
     The skin of a scan of a body tells least of it: bones are shown where their numbers are known,
-    else slices, unless an organ was cut out before.
+    else the body is cut open.
     """
     array = case.needed_array
     if case.wishes.question == "auto" and _is_stack(case, array):
         return stack(case)
     level = _level(case, array)
     if isinstance(level, str):
-        return slices(case, level)
+        return _cut_open(case) or slices(case, level)
     part = dict(case.wishes.part) | {"contour": array.name, "level": level.at}
     whole = replace(case, wishes=replace(case.wishes, part=part))
     mesh = whole.wishes.isosurface(level.volume)
@@ -97,7 +101,7 @@ def isosurface(case: Case) -> Drawing:
     if has_molecule:
         mesh = Step("outward", ".compute_normals", mesh, **OUTWARD)
     if not level.is_sure and _is_crumbs(mesh.run()):
-        return slices(case, "; isosurfaces are crumbs")
+        return _cut_open(case) or slices(case, "; isosurfaces are crumbs")
     surface, box = _framed(whole, mesh, boxed=level.boxed)
     if has_molecule and box is None and case.wishes.frame is None:
         # Atoms may stand out of the isosurface.
@@ -155,7 +159,7 @@ def _level(case: Case, array: Named) -> _Level | str:
     if is_scan and _has_bones(values):
         level, contrast = BONE, levels.GOOD
         notes.append("bone, by the numbers of computed tomography, in which air is -1000")
-    elif is_scan and is_auto and case.is_of_body and np.mean(values == values.min()) < CUT_OUT:
+    elif is_scan and is_auto and _is_gray(case, array) and _is_compact(case, array):
         return ""
     else:
         level, contrast = levels.best_level(volume.run(), array.name)
@@ -266,27 +270,62 @@ def _is_rough(case: Case, mesh: Step, camera: Step) -> bool:
 def slices(case: Case, why: str = "") -> Drawing:
     """Draw three slices through the middle of a volume, in the colours of its values."""
     array = case.needed_array
-    values = _sample(case, array)
-    # As radiologists print them.
-    is_signed = values.min() < -RINGING * values.max()
-    is_gray = bool(_is_air(values).any()) if is_signed else case.is_of_body
-    body = case.data
-    if is_gray and isinstance(body.run(), pv.ImageData) and not array.of_cells:
-        body = Step("body", "files.without_air", body, array.name)
-    mesh = Step("slices", ".slice_orthogonal", body)
+    is_gray = _is_gray(case, array)
+    mesh = Step("slices", ".slice_orthogonal", case.data)
     mesh = Step("joined", ".combine", mesh)
-    if body is not case.data:
-        mesh = Step("parts", ".threshold", mesh, scalars=array.name, all_scalars=True)
     mesh = Step("slices", ".extract_surface", mesh, algorithm="dataset_surface")
     box = Step("box", ".outline", mesh)
     camera = case.camera(box, case.eye(mesh), boxed=True)
     scene = case.wishes.scene("none", camera)
-    colors, note = case.ranged_of(body, array, "gray" if is_gray else LIGHTNESS, scan=is_gray)
+    colors, note = case.ranged_of(case.data, array, "gray" if is_gray else LIGHTNESS, scan=is_gray)
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     lit = case.lit(mesh, scene)
     words = f"slices of {array.name} through the middle{why}"
     layers = [Layer(mesh, shown), *case.boxed(box, camera)]
     notes = [note] if note else []
+    return Drawing(layers, camera, scene, lit, words, [case.bar(array, colors)], notes)
+
+
+def _is_gray(case: Case, array: Named) -> bool:
+    """Return whether values are shown in grey, as radiologists print them."""
+    values = _sample(case, array)
+    is_signed = values.min() < -RINGING * values.max()
+    return bool(_is_air(values).any()) if is_signed else case.is_of_body
+
+
+def _is_compact(case: Case, array: Named) -> bool:
+    """Return whether what is above the lowest value of an image fills much of its box."""
+    mesh = case.data.run()
+    steps = tuple(slice(None, None, max(1, size // STEPS)) for size in mesh.dimensions)
+    values = np.asarray(mesh[array.name]).reshape(mesh.dimensions, order="F")[steps]
+    places = np.argwhere(values > np.nanmin(values))
+    return bool(len(places) > COMPACT * np.prod(np.ptp(places, axis=0) + 1))
+
+
+def _cut_open(case: Case) -> Drawing | None:
+    """Draw the body in a scan cut open toward the eye, None where there is no body in air."""
+    array, wishes = case.needed_array, case.wishes
+    if not _is_scan(case, array) or not _is_gray(case, array):
+        return None
+    eye = Viewpoint(FACE, (0.0, 0.0, 1.0)) if case.is_of_body else ISOMETRIC
+    first = wishes.camera(case.data, eye).run()
+    toward = np.round(np.subtract(first.position, first.focal_point) / first.distance, 3)
+    parts = Step("parts", "files.cut_open", case.data, array.name, toward=tuple(toward.tolist()))
+    if not parts.run()["skin"].n_points:
+        return None
+    skin, cut = (Step(name, "[]", parts, name) for name in ("skin", "cut"))
+    camera = case.camera(skin, eye)
+    scene = wishes.scene("none", camera)
+    colors, note = case.ranged_of(case.data, array, "gray", scan=True)
+    shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
+    around = replace(case, data=skin, contents=Contents(skin.run()), question="shape")
+    light = wishes.light_of_surface()
+    drawn = {"color": SKIN[wishes.style], "scene": around.exposed(skin, camera, **light)}
+    drawn |= wishes.drawn(light)
+    layers = [Layer(cut, shown), Layer(skin, drawn)]
+    words = f"{array.name} in a body cut open toward the eye"
+    notes = [note] if note else []
+    lit = case.lit(cut, scene)
     return Drawing(layers, camera, scene, lit, words, [case.bar(array, colors)], notes)
 
 
