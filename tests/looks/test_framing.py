@@ -18,23 +18,23 @@ def eye(mesh):
     [((0, 0, 1), (0, 0, 1)), ((1, 0, 0), (1, 0, 0)), ((0, 1, 0), (0, -1, 0))],
 )
 def test_a_sheet_is_seen_along_its_axis(direction, toward):
-    found = eye(pv.Plane(direction=direction, i_size=3, j_size=2))
-    assert found.toward == toward
-    assert found.parallel
+    viewpoint = eye(pv.Plane(direction=direction, i_size=3, j_size=2))
+    assert viewpoint.toward == toward
+    assert viewpoint.parallel
 
 
 def test_a_strip_lies_along_the_picture():
     strip = pv.Plane(i_size=1, j_size=9)
-    found = eye(strip)
-    right = np.cross(found.up, found.toward)
+    viewpoint = eye(strip)
+    right = np.cross(viewpoint.up, viewpoint.toward)
     assert abs(right[1]) == pytest.approx(1)
 
 
 def test_what_has_no_side_up_lies_across_with_its_thin_side_in_depth():
     ball = pv.Sphere().scale((2, 1, 9)).rotate_x(25).rotate_z(40)
-    found = framing.eye_across(ball)
-    right = np.cross(found.up, found.toward)
-    sizes = [np.ptp(ball.points @ way) for way in (found.toward, found.up, right)]
+    viewpoint = framing.eye_across(ball)
+    right = np.cross(viewpoint.up, viewpoint.toward)
+    sizes = [np.ptp(ball.points @ way) for way in (viewpoint.toward, viewpoint.up, right)]
     np.testing.assert_allclose(sizes, (1, 2, 9), rtol=0.02)
 
 
@@ -101,10 +101,10 @@ def test_a_surface_that_its_box_cuts_is_seen_near_a_diagonal():
 def test_a_thing_that_stands_along_y_has_y_up(turn):
     foot = pv.Cone(direction=(0, 1, 0), radius=0.6, resolution=24).triangulate()
     thing = foot.subdivide(3).rotate_x(turn)
-    found = eye(thing)
-    assert found.up == ((0, 1, 0) if turn == 0 else (0, 0, 1))
+    viewpoint = eye(thing)
+    assert viewpoint.up == ((0, 1, 0) if turn == 0 else (0, 0, 1))
     # It is seen from above its foot.
-    assert np.dot(found.toward, found.up) > 0.3
+    assert np.dot(viewpoint.toward, viewpoint.up) > 0.3
 
 
 @pytest.mark.parametrize("thing", [pv.Sphere(), pv.Cube(), pv.Cylinder(direction=(0, 1, 0))])

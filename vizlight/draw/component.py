@@ -25,7 +25,7 @@ from vizlight.draw.margins import Margin, ink_on
 from vizlight.draw.notebook import guard, guard_exports
 from vizlight.draw.scalar_bars import name_no_data, settle
 from vizlight.draw.sources import sources_of, tinted
-from vizlight.draw.strokes import check_widths, enlarge, has_pass, stroke_of
+from vizlight.draw.strokes import check_halo, check_widths, enlarge, has_pass, stroke_of
 from vizlight.filters import relight
 from vizlight.filters.key import WORDS, key, question_of
 from vizlight.filters.relight import Source
@@ -424,7 +424,7 @@ class Component:
 
         Light is drawn as areas of one colour each, which are painted from dark to light and reach
         beneath those that follow, and the background last, so that no seams show at any scale.
-        More than 32 colours become three plates in an SVG file, as in print: levels of red, of
+        More than 128 colours become three plates in an SVG file, as in print: levels of red, of
         green and of blue, of which the picture has the lightest (``mix-blend-mode: lighten``).
         Hidden surfaces have no path. Lines are strokes of their widths, or outlines where these
         change, with halos; words of texts, keys and scalar bars stay text.
@@ -744,10 +744,8 @@ def _check_lines(
     """Return the keywords of how lines are drawn, checked."""
     if line_diameter is not None:
         line_diameter = _check.positive("line_diameter", line_diameter)
-    if isinstance(halo, str):
-        _check.color("halo", halo)
-    elif halo is not None and not isinstance(halo, bool):
-        halo = _check.number("halo", halo, low=0.0, high=100.0)
+    if halo is not None:
+        halo = check_halo(halo)
     if width is not None:
         width = _check.text("width", width, expected="the name of a point array")
         for block, _ in blocks.named_blocks(mesh):

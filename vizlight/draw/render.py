@@ -216,10 +216,7 @@ def make_plotter(
     if line_diameter is not None:
         line_diameter = _check.positive("line_diameter", line_diameter)
     tubes = _check.boolean("render_lines_as_tubes", render_lines_as_tubes)
-    if isinstance(halo, str):
-        _check.color("halo", halo)
-    elif not isinstance(halo, bool):
-        halo = _check.number("halo", halo, low=0.0, high=100.0)
+    halo = strokes.check_halo(halo)
     meshes = pv.MultiBlock([block for panel in shown for block in all_blocks(panel.mesh)])
     back = pv.Color(_check.color("background", background) or backdrop(meshes))
     if camera is None:

@@ -96,6 +96,14 @@ def check_widths(mesh: pv.DataSet, name: str) -> None:
         raise _check.value_error("width", "the name of a point array of one number per point", got)
 
 
+def check_halo(halo: bool | float | str) -> bool | float | str:
+    """Return the option ``halo``, checked: whether lines have halos, or their width or colour."""
+    if isinstance(halo, str):
+        _check.color("halo", halo)
+        return halo
+    return halo if isinstance(halo, bool) else _check.number("halo", halo, low=0.0, high=100.0)
+
+
 def with_halo(stroke: Stroke, line_width: float, halo: float | str | None) -> Stroke:
     """Return a stroke with a halo.
 

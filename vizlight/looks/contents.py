@@ -17,7 +17,7 @@ from vizlight.vtk.arrays import are_colors
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Array, Raw
+    from vizlight._types import AnyArray, Array, Raw
 
 Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
 
@@ -365,7 +365,7 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         # Where it is missing it shows where there is something.
         return Named(name, "kinds", of_cells, 1, low, high) if len(finite) < len(sample) else None
     distinct = len(np.unique(finite))
-    whole = high - low < MOST_SPAN and bool(np.all(finite == np.round(finite)))
+    whole = high - low < MOST_SPAN and _are_whole(finite)
     ground = _HEIGHTS.search(lower) and not _NO_GROUND.search(lower)
     few = distinct <= meaning.MOST_KINDS and not (named and ground)
     if whole and (few or of_kinds or _are_labels(values)):
@@ -398,6 +398,11 @@ def _is_table(name: str) -> bool:
     return len(words) > 1 and _TABLE_WORDS.issuperset(words)
 
 
+def _are_whole(values: AnyArray) -> bool:
+    """Return whether finite values are whole numbers, one at least."""
+    return len(values) > 0 and bool(np.all(values == np.round(values)))
+
+
 def _are_labels(values: Raw) -> bool:
     """Return whether whole numbers are labels: neighbours mostly equal, else far apart."""
     # The middle of the image may be ground, 0.
@@ -419,8 +424,7 @@ def _are_regions(mesh: pv.DataSet, values: Raw) -> bool:
     """Return whether an array of a flat mesh has whole numbers that are labels."""
     if values.ndim != 1 or values.dtype.kind not in "fiu" or mesh.bounds_size[2]:
         return False
-    known = np.asarray(values[np.isfinite(values)], dtype=np.float64)
-    return len(known) > 0 and bool(np.all(known == np.round(known))) and _are_labels(values)
+    return _are_whole(values[np.isfinite(values)]) and _are_labels(values)
 
 
 def kinds_of(mesh: pv.DataSet, name: str, most: int | None = None) -> Sequence[float]:

@@ -90,8 +90,8 @@ def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Vi
         return _above(mesh, contents.flat_axis)
     if mesh.n_cells and mesh.max_cell_dimensionality == 2 and isinstance(mesh, pv.PolyData):
         return _of_surface(mesh, shown)
-    points = _some(np.asarray(mesh.points, dtype=np.float64))
-    extent = np.ptp(points[np.isfinite(points).all(axis=1)], axis=0) if len(points) else points
+    points = _finite_points(mesh)
+    extent = np.ptp(points, axis=0) if len(points) else points[:0]
     if contents.dimension == 3 and len(extent) == 3 and extent.min() < LAYER * np.median(extent):
         # Data in a slab, such as a flow between two plates, are seen across it.
         return _above(mesh, int(np.argmin(extent)))
@@ -116,9 +116,8 @@ def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
         upward = {"time": "time", "latitude": "north"}.get(section[1].title, "height")
         return Viewpoint(toward, up, True, f"with {upward} up")
     right = np.cross(up, toward)
-    points = _some(np.asarray(mesh.points, dtype=np.float64))
+    points = _finite_points(mesh)
     flat = np.stack([points @ right, points @ np.asarray(up)], axis=1)
-    flat = flat[np.isfinite(flat).all(axis=1)]
     if len(flat) > 2:
         _, values, axes = np.linalg.svd(flat - flat.mean(axis=0), full_matrices=False)
         if values[0] > STRIP * values[1] and np.ptp(flat[:, 1]) > np.ptp(flat[:, 0]) / STRIP:
@@ -292,8 +291,7 @@ def eye_across(mesh: pv.PolyData) -> Viewpoint:
     mesh : pyvista.PolyData
         Mesh with points.
     """
-    points = _some(np.asarray(mesh.points, dtype=np.float64))
-    points = points[np.isfinite(points).all(axis=1)]
+    points = _finite_points(mesh)
     if len(points) < 2:
         return ISOMETRIC
     axes = np.linalg.eigh(np.cov(points.T))[1].T
@@ -304,17 +302,16 @@ def eye_across(mesh: pv.PolyData) -> Viewpoint:
 
 
 def eye_on_body(mesh: pv.DataSet) -> Viewpoint:
-    """Return the eye at a side of data in the axes of a body, else before, behind or above it.
+    """Return the eye for data in the axes of a body: at its right or left, before or above it.
 
-    Of these it is the one from which the data are largest, and a side if this is nearly as large.
+    The data are largest from there; a side is preferred if they are nearly as large from it.
 
     Parameters
     ----------
     mesh : pyvista.DataSet
         Mesh with points, x to the right, y forward and z up.
     """
-    points = _some(np.asarray(mesh.points, dtype=np.float64))
-    points = points[np.isfinite(points).all(axis=1)]
+    points = _finite_points(mesh)
     if not len(points):
         return ISOMETRIC
     low, middle, high = np.percentile(points, (5, 50, 95), axis=0)
@@ -501,6 +498,12 @@ def _triangles(surface: pv.PolyData) -> tuple[Indices, Array]:
 
 def _some(points: Array) -> Array:
     return points[:: max(len(points) // SAMPLE, 1)]
+
+
+def _finite_points(mesh: pv.DataSet) -> Array:
+    """Return some of the points of a mesh, without those that are not finite."""
+    points = _some(np.asarray(mesh.points, dtype=np.float64))
+    return points[np.isfinite(points).all(axis=1)]
 
 
 def _vector(values: Array) -> Vector:

@@ -216,7 +216,8 @@ class Dimmed:
         # None has no bytes for a digest; an empty array stands for it.
         arrays = (np.empty(0) if x is None else x for x in self._targets)
         self._source = f"{work.source} {records.source(*arrays)}"
-        self._known = self._kept = _kept(mesh, names, self._source)
+        self._known = _kept(mesh, names, self._source)
+        self._missed = {} if self._known is None else _errors(self._known)
 
     def shares_of(
         self, lights: Sequence[Light], progress: Callable[[int], None] | None = None
@@ -248,9 +249,7 @@ class Dimmed:
 
     def with_errors(self, dimming: Dimming, lights: Sequence[Light]) -> Dimming:
         """Return shares of lights with their errors in the record, kept ones where they are."""
-        known: dict[str, Missed] = {}
-        if self._kept is not None:
-            known = _errors(self._kept)
+        known = self._missed
         missing = [i for i, key in enumerate(dimming.keys) if key not in known]
         if missing:
             medium, diameter = self._work.medium

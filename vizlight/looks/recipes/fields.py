@@ -468,12 +468,11 @@ def _hull(case: Case, mesh: Step) -> list[Layer]:
     """
     if isinstance(mesh.run(), pv.ImageData | pv.RectilinearGrid):
         return []
-    hull = Step("hull", ".extract_surface", mesh, algorithm="dataset_surface")
-    # The volume within: cells whose corners are in the other order have walls that face inward.
-    walls = hull.run()
-    heights = np.einsum("ij,ij->i", walls.cell_centers().points - walls.center, walls.face_normals)
-    near = "front" if heights @ walls.compute_cell_sizes()["Area"] > 0 else "back"
-    drawn = {"color": WALLS[case.wishes.style], "culling": near, **WALL_LIGHT}
+    surface = Step("surface", ".extract_surface", mesh, algorithm="dataset_surface")
+    # Cells whose corners are in the other order have walls that face inward.
+    outward: Keywords = {"auto_orient_normals": True, "cell_normals": False}
+    hull = Step("hull", ".compute_normals", surface, **outward)
+    drawn = {"color": WALLS[case.wishes.style], "culling": "front", **WALL_LIGHT}
     return [Layer(hull, drawn, live=False)]
 
 
