@@ -121,7 +121,10 @@ def read(
 ) -> pv.DataSet | pv.MultiBlock | None:
     """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
     suffix = path.suffix.lower()
-    if suffix in cf_grids.SUFFIXES:
+    # GMT's grids are netCDF mostly, and those of other programs rasters.
+    if suffix in cf_grids.SUFFIXES or (
+        suffix == ".grd" and _head(path, 4)[:3] in (b"CDF", b"\x89HD")
+    ):
         return cf_grids.read(path, time, at, nodata)
     if at:
         raise ValueError(f"at: expected a netCDF file beside it, got a {suffix} file; leave it out")
