@@ -81,8 +81,8 @@ def _cloud(values: dict[str, Raw], *, is_image: bool) -> pv.PolyData:
     mesh = pv.PolyData(points @ turn)
     meaning.attach(mesh, meaning.Meaning(axes=axes))
     if {*_NORMALS} <= {*values}:
-        rows = np.hstack([values.pop(name) for name in _NORMALS])[known]
-        mesh.point_data["Normals"] = rows @ turn
+        normals: Array = np.hstack([values.pop(name) for name in _NORMALS])[known]
+        mesh.point_data["Normals"] = normals @ turn
         mesh.point_data.active_normals_name = "Normals"
     for name, rows in values.items():
         if name in _COLORS and rows.itemsize == 4:
