@@ -81,7 +81,7 @@ def _cloud(values: dict[str, Raw], *, is_image: bool) -> pv.PolyData:
     mesh = pv.PolyData(points @ turn)
     meaning.attach(mesh, meaning.Meaning(axes=axes))
     if {*_NORMALS} <= {*values}:
-        normals: Array = np.hstack([values.pop(name) for name in _NORMALS])[known]
+        normals: Foreign = np.hstack([values.pop(name) for name in _NORMALS])[known]
         mesh.point_data["Normals"] = normals @ turn
         mesh.point_data.active_normals_name = "Normals"
     for name, rows in values.items():
