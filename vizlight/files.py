@@ -142,8 +142,9 @@ def read(
     """Read a mesh from a file; one that is damaged does not end this process.
 
     These are files that PyVista reads, tractograms, rasters, netCDF grids, molecules and crystals
-    (.pdb, .cif, .xyz), maps of densities (.mrc, .ccp4), and tables (.csv) of points that name
-    columns of places in their first line: x, y, z or lon, lat.
+    (.pdb, .cif, .xyz), maps of densities (.mrc, .ccp4), fields of OpenDX (.dx), point clouds
+    (.las, .pcd), and tables (.csv) of points that name columns of places in their first line: x,
+    y, z or lon, lat.
 
     Parameters
     ----------
