@@ -143,8 +143,9 @@ def read(
     """Read a mesh from a file; one that is damaged does not end this process.
 
     These are files that PyVista reads, tractograms, rasters, netCDF grids, molecules and crystals
-    (.pdb, .cif, .xyz), maps of densities (.mrc, .ccp4), and tables (.csv) of points that name
-    columns of places in their first line: x, y, z or lon, lat.
+    (.pdb, .cif, .xyz), maps of densities (.mrc, .ccp4), fields of OpenDX (.dx), point clouds
+    (.las, .pcd), and tables (.csv) of points that name columns of places in their first line: x,
+    y, z or lon, lat.
 
     Parameters
     ----------
@@ -273,7 +274,9 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
     is_packed = path.suffix.lower() in _UNPACK and inner and inner not in _PACKED_ALIKE
     # GRIB is known by its first bytes: names of forecasts end by their hour.
     is_named = path.suffix.lower() in foreign_files.PACKAGES
-    if is_packed or (not is_named and _begins(path, b"GRIB")):
+    if is_packed or (
+        not is_named and path.is_file() and foreign_files.first_bytes(path, 4) == b"GRIB"
+    ):
         return _unpacked(path, lambda file: _read(file, selection))
     reason, notes = "no points", list[str]()
     meshes: list[Foreign] = []
@@ -302,6 +305,8 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
     errors = _faults(errors)
     if not meshes or not all(isinstance(mesh, pv.DataSet) and mesh.n_points for mesh in meshes):
         reason = f"no points: {errors[0]}" if errors else reason
+        if "CFF Fluent" in reason:  # as VTK says of any other .h5 file
+            reason = "HDF5 of an unknown program; look at a mesh of arrays that h5py reads"
         got, remedy = f"'{path}' ({reason})", foreign_files.way_out(path)
         raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
     # After an error VTK gives what it has read so far: a part of a mesh, which looks like a whole.
@@ -346,14 +351,6 @@ def _refusal(path: Path, selection: Selection) -> str:
     except Exception:  # noqa: BLE001 - of any type: it is raised again where the file is read
         return ""
     return ""
-
-
-def _begins(path: Path, head: bytes) -> bool:
-    """Return whether a file begins with some bytes."""
-    if not path.is_file():
-        return False
-    with path.open("rb") as file:
-        return file.read(len(head)) == head
 
 
 def _size(path: Path) -> int:

@@ -36,6 +36,12 @@ def test_ctrl_c_is_one_line(volume, tmp_path, capfd, monkeypatch):
     assert not out.exists()
 
 
+def test_a_file_in_a_folder_needs_no_suffix(tmp_path, capfd):
+    (tmp_path / "solid").write_bytes(b"1 2 3")
+    assert cli.main([str(tmp_path / "solid")]) == 2
+    assert "no reader takes '' files" in capfd.readouterr().err
+
+
 def test_names_with_control_characters_are_written_by_their_numbers(tmp_path, capfd):
     """They would move the cursor of a terminal, or turn the direction of writing."""
     name = "\x1b[31m\u202egnp\x7f\u200b"

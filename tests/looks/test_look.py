@@ -544,6 +544,19 @@ def test_creases_of_a_part_are_lines_that_are_seen():
     assert len(vizlight.look(pv.Sphere(), size=SIZE).drawing.layers) == 1
 
 
+def test_a_plane_of_many_unequal_cells_shows_their_sizes_where_most_are():
+    ring = pv.Disc(inner=1, outer=2, r_res=80, c_res=80)
+    far = np.linalg.norm(ring.points, axis=1, keepdims=True)
+    ring.points *= np.exp(8 * (far - 1)) / far
+    ring.clear_data()
+    look = vizlight.look(ring, size=SIZE)
+    assert look.drawing.words == "plane in the colours of the areas of its cells"
+    assert look.notes[-1] == "the lesser half of the cells fills the picture"
+    assert look.view.GetParallelScale() < ring.points.max() / 10
+    even = pv.ImageData(dimensions=(81, 81, 1))
+    assert vizlight.look(even, size=SIZE).drawing.words == "plane"
+
+
 def test_cells_that_lie_over_others_on_a_flat_mesh_are_no_creases():
     # Columns of a grid of an ocean come again at its seam.
     x, y = np.meshgrid([0.0, 1, 2, 3, 1, 2], np.arange(5.0), indexing="ij")

@@ -69,6 +69,10 @@ def test_amounts_that_are_mostly_none_have_a_ground():
     shown = range_shown(ice, amounts=True)
     assert shown[:3] == (0.05, 1.0, False)
     assert shown.ground
+    # Salinity on land is 0, which is far from all others.
+    salt = range_shown(np.where(ice > 0, 30 + 8 * ice, 0), amounts=True)
+    assert (salt.apart, salt.ground) == (True, False)
+    assert 36 <= salt.low < 38 <= salt.high
     # Rounding below 0 changes nothing, and what is nowhere 0 has no ground.
     assert range_shown(np.append(rain, -1e-9), amounts=True).ground
     assert not range_shown(ice + 0.1, amounts=True).ground

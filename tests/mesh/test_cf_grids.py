@@ -770,3 +770,25 @@ def test_the_title_has_the_level_of_a_single_layer(unit, ticks, given, shown):
     look = vizlight.look(data, size=(90, 60), at=given)
     level = f" at {shown}" if shown else ""
     assert look.drawing.keys[0]["title"].startswith(f"t{level} (K)")
+
+
+@pytest.mark.parametrize("offset", [0, 1])
+def test_old_grids_of_gmt_are_rows_from_north_to_south(tmp_path, offset):
+    ends = {"x_range": [0.0, 4], "y_range": [-1.0, 2], "z_range": [0.0, 9], "spacing": [1.0, 1.0]}
+    data = xr.Dataset({name: ("side", values) for name, values in ends.items()})
+    data["x_range"].attrs["units"] = "longitude [degrees_east]"
+    data["y_range"].attrs["units"] = "latitude [degrees_north]"
+    data["dimension"] = "side", [5 - offset, 4 - offset]
+    count = (5 - offset) * (4 - offset)
+    data["z"] = "xysize", np.arange(float(count)), {"node_offset": offset}
+    data.to_netcdf(tmp_path / "a.grd")
+    mesh = vizlight.read(tmp_path / "a.grd")
+    assert mesh.field_data["unit"][0] == "degree"
+    assert mesh.bounds[:4] == (offset / 2, 4 - offset / 2, -1 + offset / 2, 2 - offset / 2)
+    assert mesh["z"][mesh.find_closest_point((0, 2, 0))] == 0
+    assert mesh["z"][mesh.find_closest_point((4, -1, 0))] == count - 1
+    data.to_netcdf(tmp_path / "b.grd", format="NETCDF3_CLASSIC")
+    content = (tmp_path / "b.grd").read_bytes()
+    (tmp_path / "b.grd").write_bytes(content[:-20])
+    with pytest.raises(files.FileError, match="a variable is not whole"):
+        vizlight.read(tmp_path / "b.grd")

@@ -408,6 +408,14 @@ def test_points_of_a_scan(tmp_path, count):
     np.testing.assert_array_equal(scan["color"], [[5, 255, 0], [6, 0, 255]])
 
 
+def test_other_files_of_hdf5_are_refused_with_a_way_out(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["field"] = np.zeros((2, 3))
+    with pytest.raises(files.FileError, match="HDF5 of an unknown program; look at a mesh of"):
+        vizlight.read(tmp_path / "a.h5")
+
+
 def test_triangles_in_text_of_a_brain(tmp_path):
     path = tmp_path / "cortex.tri"
     path.write_text("- 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 2 0 0 0 1\n- 1 1 1\n0 1 2\n")

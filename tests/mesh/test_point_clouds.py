@@ -41,6 +41,14 @@ def test_points_of_a_camera_are_upright_and_colours_are_in_four_bytes(tmp_path):
     assert "z up" in meaning.line(mesh)
 
 
+def test_normals_turn_with_the_points(tmp_path):
+    fields = "x y z normal_x normal_y normal_z"
+    options = {"sizes": "4 4 4 4 4 4", "types": "F F F F F F", "rows": 3}
+    body = b"0 -1 2 0 -1 0\n0 0 2 0 0 -1\n0 1 3 1 0 0\n"
+    mesh = vizlight.read(written(tmp_path, fields, body, **options))
+    assert mesh.point_data.active_normals.tolist() == [[0, 0, 1], [0, -1, 0], [1, 0, 0]]
+
+
 def test_packed_fields_follow_one_another(tmp_path):
     # Two literals of four bytes, one of them and six more that repeat what came before.
     ones = np.float32(1).tobytes()

@@ -55,7 +55,9 @@ def _with_command(words: list[str]) -> list[str]:
     first = words[0] if words else ""
     if first == "hillshade":  # its name elsewhere
         words = ["relief", *words[1:]]
-    if not first.startswith("-") and Path(first).suffix:
+    path = Path(first)
+    # A name without a suffix may be that of a command.
+    if not first.startswith("-") and (path.suffix or (len(path.parts) > 1 and path.is_file())):
         words = ["light", *words]
     options.add_commands(words[0] if words else "")
     return words

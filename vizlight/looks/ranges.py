@@ -122,6 +122,12 @@ def range_shown(
             ground = amounts and float(np.mean(values < bottom)) > MOSTLY_NONE
             return Range(bottom, end, True, clipped=(low < bottom, False), ground=ground)
         if amounts and np.mean(values <= 0) > MOSTLY_NONE:
+            bottom, first, top = np.percentile(values[values > 0], (2, 5, 99.5))
+            if first > high / 2 > 0.5:
+                # 0 is far from nearly all amounts, and these no shares: salinity on land.
+                step = (top - bottom) / 10
+                bottom, top = _rounded(bottom, step, np.floor), _rounded(top, step, np.ceil)
+                return Range(bottom, top, clipped=(True, high > top), apart=True)
             end = even_ends(0.0, high)[1]
             return Range(LEAST_AMOUNT * end, end, clipped=(True, False), ground=True)
     fences = (

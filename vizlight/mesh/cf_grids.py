@@ -234,7 +234,23 @@ def read(
                 "a trajectory of Amber has no bonds: save a state of it as .pdb, by cpptraj or "
                 "MDAnalysis"
             )
-        return of_dataset(file, time, at, nodata, source=str(path))
+        return of_dataset(_of_gmt(file), time, at, nodata, source=str(path))
+
+
+def _of_gmt(file: Foreign) -> Foreign:
+    """Return a grid that GMT wrote before its version 4, in one row, as rows and columns."""
+    if {*file.sizes} != {"side", "xysize"}:
+        return file
+    sizes, coords = file["dimension"].values, {}
+    # Values are those of nodes, or of the middles of cells.
+    insets = file["z"].attrs.get("node_offset", 0) * file["spacing"].values / 2
+    for axis, size, inset, way in zip("xy", sizes, insets, (1, -1), strict=True):
+        ends = file[f"{axis}_range"]
+        first, last = ends.values[::way] + way * inset * np.array([1, -1])
+        words = {"units": ends.attrs.get("units", "").partition("[")[2].rstrip("]")}
+        coords[axis] = (axis, np.linspace(first, last, size), words)
+    rows = (("y", "x"), file["z"].values.reshape(sizes[::-1]), file["z"].attrs)
+    return file.assign(z=rows).assign_coords(coords)[["z"]]
 
 
 def _engine(path: Path) -> Foreign:

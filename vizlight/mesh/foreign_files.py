@@ -121,7 +121,10 @@ def read(
 ) -> pv.DataSet | pv.MultiBlock | None:
     """Return the mesh of a file that PyVista cannot read; None where it is left to PyVista."""
     suffix = path.suffix.lower()
-    if suffix in cf_grids.SUFFIXES:
+    # GMT's grids are netCDF mostly, and those of other programs rasters.
+    if suffix in cf_grids.SUFFIXES or (
+        suffix == ".grd" and first_bytes(path, 4)[:3] in (b"CDF", b"\x89HD")
+    ):
         return cf_grids.read(path, time, at, nodata)
     if at:
         raise ValueError(f"at: expected a netCDF file beside it, got a {suffix} file; leave it out")
@@ -154,7 +157,7 @@ def _of_other(path: Path, time: object, nodata: float | None) -> pv.DataSet | pv
             # VTK's reader leaves out a row, and says nothing of what is missing.
             return georeference.read(path)
         _refuse_narrow(path)
-    if suffix == ".inp" and _head(path, _INP_HEAD).lstrip().startswith(b"*"):
+    if suffix == ".inp" and first_bytes(path, _INP_HEAD).lstrip().startswith(b"*"):
         # PyVista takes it for the format of AVS.
         return abaqus.read(path)
     if PACKAGES.get(suffix, ("",))[0] in ("meshio", "h5py") and missing(path) == "":
@@ -171,7 +174,8 @@ def _of_other(path: Path, time: object, nodata: float | None) -> pv.DataSet | pv
     return None
 
 
-def _head(path: Path, count: int) -> bytes:
+def first_bytes(path: Path, count: int) -> bytes:
+    """Return the first bytes of a file."""
     with path.open("rb") as file:
         return file.read(count)
 
@@ -418,7 +422,7 @@ def _triangles(path: Path) -> pv.PolyData | None:
 
     A number of points stands before these and their normals, and three of triangles before theirs.
     """
-    if _head(path, 2) != b"- ":
+    if first_bytes(path, 2) != b"- ":
         return None
     words = path.read_bytes().split()
     n_points = int(words[1])
@@ -449,7 +453,7 @@ def _lidar(path: Path) -> pv.PolyData:
 
 def _refuse_narrow(path: Path) -> None:
     """Raise ValueError for an elevation model in which VTK's reader divides by zero."""
-    number = _head(path, _DEM_COLUMNS.stop)[_DEM_COLUMNS].strip()
+    number = first_bytes(path, _DEM_COLUMNS.stop)[_DEM_COLUMNS].strip()
     if not number.isdigit() or int(number) < _DEM_LEAST:
         got = ascii(number.decode("latin-1"))
         raise ValueError(f"{got} columns in the header, VTK reads {_DEM_LEAST} or more")

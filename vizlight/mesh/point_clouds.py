@@ -73,14 +73,16 @@ def _cloud(values: dict[str, Raw], *, is_image: bool) -> pv.PolyData:
     points: Array = np.hstack([values.pop(name) for name in _PLACES])
     known = np.isfinite(points).all(axis=1)
     points, axes = points[known], ["x", "y", "z"]
+    turn = np.eye(3, dtype=points.dtype)
     if is_image and len(points) and (points[:, 2] > 0).all() and points[-1, 1] > points[0, 1]:
         # By the convention of cameras, y is down and z away from them.
-        points = points[:, [0, 2, 1]] * np.array([1, 1, -1], dtype=points.dtype)
+        turn = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], dtype=points.dtype)
         axes = ["x to the right", "y away from the camera", "z up"]
-    mesh = pv.PolyData(points)
+    mesh = pv.PolyData(points @ turn)
     meaning.attach(mesh, meaning.Meaning(axes=axes))
     if {*_NORMALS} <= {*values}:
-        mesh.point_data["Normals"] = np.hstack([values.pop(name) for name in _NORMALS])[known]
+        normals: Foreign = np.hstack([values.pop(name) for name in _NORMALS])[known]
+        mesh.point_data["Normals"] = normals @ turn
         mesh.point_data.active_normals_name = "Normals"
     for name, rows in values.items():
         if name in _COLORS and rows.itemsize == 4:

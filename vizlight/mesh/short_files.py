@@ -125,7 +125,8 @@ def _netcdf(file: BinaryIO) -> str:
     if head.startswith(_LARGE):
         return ""
     if not head.startswith(_CLASSIC):
-        return "neither netCDF nor HDF5"
+        # Grids of this name are netCDF by GMT alone.
+        return "" if file.name.lower().endswith(".grd") else "neither netCDF nor HDF5"
     from scipy.io import netcdf_file
 
     try:
@@ -489,5 +490,5 @@ _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     **dict.fromkeys((".dat", ".tec"), _tecplot),
     **dict.fromkeys((*_INDICES[1:], ".vtp", ".vtu"), vtk_xml.missing_part),
     **dict.fromkeys((".vti", ".vtr", ".vts"), vtk_xml.missing_piece),
-    **dict.fromkeys((".nc", ".nc4", ".cdf", ".e", ".ex2", ".exo", ".exii"), _netcdf),
+    **dict.fromkeys((".nc", ".nc4", ".cdf", ".grd", ".e", ".ex2", ".exo", ".exii"), _netcdf),
 }  # fmt: skip

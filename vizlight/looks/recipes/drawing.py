@@ -270,9 +270,8 @@ class Case:
         Those of an isosurface come of noise, or of the size of its cells, and those of a flat mesh
         of cells that lie over others, as at the seam of a grid of an ocean.
         """
-        if self.is_isosurface or self.contents.flat_axis is not None:
-            return None
-        if not isinstance(self.surface.run(), pv.PolyData):
+        is_sheet = self.contents.dimension == 2 and self.contents.flat_axis is not None
+        if self.is_isosurface or is_sheet or not isinstance(self.surface.run(), pv.PolyData):
             return None
         edges = Step("creases", "files.creases", self.surface)
         return edges if edges.run().n_cells else None

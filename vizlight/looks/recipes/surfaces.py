@@ -11,6 +11,7 @@ import pyvista as pv
 from vizlight.draw.ticks import USUAL, even_levels
 from vizlight.filters.fur import LENGTH
 from vizlight.looks.contents import Contents, kinds_of
+from vizlight.looks.ranges import Range
 from vizlight.looks.recipes.drawing import (
     BESIDE,
     LIGHTNESS,
@@ -18,6 +19,7 @@ from vizlight.looks.recipes.drawing import (
     ON_SURFACES,
     Drawing,
     Layer,
+    colors_in,
     colors_of,
     colors_of_kinds,
     file_named,
@@ -42,6 +44,9 @@ GREY, MOST_WITH_EDGES = "#9a9a9a", 5000
 #: Length in pixels from which isolines on a solid are long, least share of their length in long
 #: ones, and least distance between them in pixels.
 LONG, SMOOTH, APART = 100.0, 0.9, 30.0
+#: Largest area of a cell of a plane in the least from which on sizes are shown, and share of the
+#: plane that the lesser half of its cells covers below which the rest is far around them.
+GRADED, FAR_FIELD = 100, 0.02
 #: Key of a kind without a name, which is its title alone.
 TITLE_ALONE: Keywords = {"question": "value", "cmap": Step("", "vizlight.maps.kinds", {0: " "})}
 
@@ -182,14 +187,36 @@ def _keys(case: Case, scene: Step, title: str) -> list[Keywords]:
 
 
 def plane(case: Case) -> Drawing:
-    """Draw a plane without data, which no light can shape: grey, with the edges of its cells."""
+    """Draw a plane without data, which no light can shape: grey, with the edges of its cells.
+
+    Of many cells of unequal sizes these are shown, where most of them are.
+    """
     mesh = case.surface
-    camera = case.camera(mesh)
-    scene = case.wishes.scene("none", camera)
-    drawn: Keywords = {"scene": scene, "color": GREY}
+    drawn: Keywords = {"color": GREY}
     if mesh.run().n_cells <= MOST_WITH_EDGES:
         drawn |= {"show_edges": True, "edge_color": "white"}
-    return Drawing([Layer(mesh, drawn)], camera, scene, case.lit(mesh, scene), "plane")
+    else:
+        sized = Step("sized", ".compute_cell_sizes", mesh, length=False, volume=False)
+        areas = np.asarray(sized.run()["Area"])
+        low, median, high = map(float, np.quantile(areas, (0, 0.5, 1)))
+        if 0 < low < high / GRADED:
+            is_far = bool(areas[areas <= median].sum() < FAR_FIELD * areas.sum())
+            fine = Step("fine", ".threshold", sized, (low, median), scalars="Area")
+            colors = colors_in(Range(low, high, logarithmic=True), LIGHTNESS)
+            frame = case.camera(fine if is_far else mesh)
+            wishes = replace(case.wishes, frame=frame, picture=colors | dict(case.wishes.picture))
+            sizes = replace(case, data=sized, contents=Contents(sized.run()), wishes=wishes)
+            drawing = values(replace(sizes, array=sizes.contents.named("Area"), question="none"))
+            return replace(
+                drawing,
+                words="plane in the colours of the areas of its cells",
+                keys=[key | {"title": "Area of cells"} for key in drawing.keys],
+                notes=["the lesser half of the cells fills the picture"] * is_far,
+            )
+    camera = case.camera(mesh)
+    scene = case.wishes.scene("none", camera)
+    layer = Layer(mesh, {"scene": scene} | drawn)
+    return Drawing([layer], camera, scene, case.lit(mesh, scene), "plane")
 
 
 def fur(case: Case) -> Drawing:
