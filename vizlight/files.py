@@ -131,6 +131,11 @@ class FileError(ValueError):
     """A file cannot be read or written."""
 
 
+def _wrong(name: str, expected: str, got: object, remedy: str = "") -> FileError:
+    """Return the error of an argument that names a file."""
+    return FileError(_check.message(name, expected, got, remedy))
+
+
 def read(
     path: str | Path | Foreign,
     /,
@@ -308,7 +313,7 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
         if "CFF Fluent" in reason:  # as VTK says of any other .h5 file
             reason = "HDF5 of an unknown program; look at a mesh of arrays that h5py reads"
         got, remedy = f"'{path}' ({reason})", foreign_files.way_out(path)
-        raise FileError(_check.message("file", "a mesh that PyVista reads", got, remedy))
+        raise _wrong("file", "a mesh that PyVista reads", got, remedy)
     # After an error VTK gives what it has read so far: a part of a mesh, which looks like a whole.
     if errors:
         raise _damaged(path, errors[0])
@@ -420,14 +425,14 @@ def _check_there(path: Path, overlays: Sequence[Path]) -> None:
             if (checked / "constant").is_dir():
                 case = checked / f"{checked.resolve().name}.foam"
                 remedy = f"an OpenFOAM case is read by an empty file in it: touch '{case}'"
-            raise FileError(_check.message(name, "a file", f"'{checked}' ({what})", remedy))
+            raise _wrong(name, "a file", f"'{checked}' ({what})", remedy)
     if not os.access(path, os.R_OK):
-        raise FileError(_check.message("file", "a readable file", f"'{path}'"))
+        raise _wrong("file", "a readable file", f"'{path}'")
     # VTK opens a name by its bytes in UTF-8; under another locale those may name another file or
     # none.
     if str(path).encode("utf-8", "replace") != os.fsencode(path):
         expected, remedy = "a name in the characters of the locale", "set PYTHONUTF8=1"
-        raise FileError(_check.message("file", expected, ascii(str(path)), remedy))
+        raise _wrong("file", expected, ascii(str(path)), remedy)
 
 
 def no_file(path: Path) -> str:
@@ -671,13 +676,13 @@ def _path(name: str, value: object) -> Path:
         # file comes later.
         if error.errno not in (errno.ENOENT, errno.ENOTDIR, errno.EACCES):
             got = f"{_check.describe(str(path))} ({error.strerror})"
-            raise FileError(_check.message(name, "a path that the system takes", got)) from error
+            raise _wrong(name, "a path that the system takes", got) from error
     return path
 
 
 def _damaged(path: Path, reason: str) -> FileError:
     got, remedy = f"'{path}' ({reason})", foreign_files.missing(path)
-    return FileError(_check.message("file", "a file that is not damaged", got, remedy))
+    return _wrong("file", "a file that is not damaged", got, remedy)
 
 
 #: Ways to files of other formats, by the ends of their names.
@@ -761,16 +766,15 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
         path.absolute()
     except FileNotFoundError as error:
         got = f"'{path}' in a working folder that is gone"
-        raise FileError(_check.message(name, "a folder that exists", got)) from error
+        raise _wrong(name, "a folder that exists", got) from error
     if path.suffix.lower() not in formats:
-        expected = f"a name that ends in {', '.join(formats)}"
-        raise FileError(_check.message(name, expected, f"'{path}'"))
+        raise _wrong(name, f"a name that ends in {', '.join(formats)}", f"'{path}'")
     if not path.parent.is_dir():
-        raise FileError(_check.message(name, "a folder that exists", f"'{path.parent}'"))
+        raise _wrong(name, "a folder that exists", f"'{path.parent}'")
     _refuse_others(name, path)
     if not os.access(path.parent, os.W_OK):
         got = f"'{path.parent}', which is read-only"
-        raise FileError(_check.message(name, "a writable folder", got))
+        raise _wrong(name, "a writable folder", got)
     return path
 
 
@@ -787,12 +791,12 @@ def check_format(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
     path, kind = _path("output", path), type(mesh).__name__
     if kind not in FORMATS:
         expected = f"one of {', '.join(FORMATS)}"
-        raise FileError(_check.message("mesh", expected, kind, "cast it to one of them"))
+        raise _wrong("mesh", expected, kind, "cast it to one of them")
     formats = FORMATS[kind]
     if path.suffix.lower() not in formats:
         expected = f"a name that ends in {', '.join(formats)} for {kind}"
         remedy = "it is one mesh, which has no blocks" if path.suffix.lower() == ".vtm" else ""
-        raise FileError(_check.message("output", expected, f"'{path.name}'", remedy))
+        raise _wrong("output", expected, f"'{path.name}'", remedy)
     return path
 
 
@@ -900,7 +904,7 @@ def _solid(field: pv.ImageData) -> pv.PolyData:
     name = height_grids.heights_name(field)
     if name is None or min(field.dimensions[:2]) < 2 or field.dimensions[2] != 1:
         expected = "an image of one layer with an active array of heights, for .stl"
-        raise FileError(_check.message("mesh", expected, _check.describe(field)))
+        raise _wrong("mesh", expected, _check.describe(field))
     top = warped(field, name, 1.0).extract_surface(algorithm="dataset_surface")
     base = top.bounds.z_min - BASE * max(field.bounds_size[:2])
     middle = (top.center[0], top.center[1], base)
@@ -936,8 +940,7 @@ def _check_names(mesh: pv.DataSet, *, legacy: bool) -> None:
         for name in data:
             if re.search(wrong, name):
                 expected = f"array names without {signs}"
-                remedy = f"rename the array, or write {other}"
-                raise FileError(_check.message("output", expected, repr(name), remedy))
+                raise _wrong("output", expected, repr(name), f"rename the array, or write {other}")
 
 
 def _reserve(draft: Path, meshes: Iterable[pv.DataSet]) -> None:
@@ -958,25 +961,25 @@ def _reserve(draft: Path, meshes: Iterable[pv.DataSet]) -> None:
                 if error.errno not in (errno.EINVAL, errno.EOPNOTSUPP, errno.ENOSYS):
                     expected = f"{size / 1e6:.1f} MB of free disk"
                     got = f"'{draft.parent.parent}' ({error.strerror})"
-                    raise FileError(_check.message("output", expected, got)) from error
+                    raise _wrong("output", expected, got) from error
         draft.unlink()
     free = shutil.disk_usage(draft.parent).free
     if size > free:
         got = f"{free / 1e6:.1f} MB in '{draft.parent.parent}'"
-        raise FileError(_check.message("output", f"{size / 1e6:.1f} MB of free disk", got))
+        raise _wrong("output", f"{size / 1e6:.1f} MB of free disk", got)
 
 
 def _check_drafts(drafts: Iterable[Path], errors: list[str]) -> None:
     """Check that written files are whole, by the messages of the writer and by their ends."""
     reasons = [short_files.missing_part(draft) if draft.is_file() else "none" for draft in drafts]
     for reason in (*errors, *filter(None, reasons)):
-        raise FileError(_check.message("output", "a file that can be written", reason))
+        raise _wrong("output", "a file that can be written", reason)
 
 
 def _refuse_others(name: str, path: Path) -> None:
     """Raise FileError where a path is no regular file, such as a folder or a pipe, but exists."""
     if path.exists() and (what := no_file(path)):
-        raise FileError(_check.message(name, "a file", f"'{path}' ({what})"))
+        raise _wrong(name, "a file", f"'{path}' ({what})")
 
 
 def _sweep(place: Path) -> None:
@@ -1019,8 +1022,7 @@ def make_folder(name: str, path: Path, /) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        expected = "a folder that can be made"
-        raise FileError(_check.message(name, expected, f"'{path}' ({error.strerror})")) from error
+        raise _wrong(name, "a folder that can be made", f"'{path}' ({error.strerror})") from error
 
 
 def replace_file(
@@ -1077,5 +1079,5 @@ def replace_file(
                 shutil.rmtree(folder if folder.exists() else fresh, ignore_errors=True)
     except OSError as error:
         got = f"'{path}' ({error.strerror})"
-        raise FileError(_check.message("output", "a file that can be written", got)) from error
+        raise _wrong("output", "a file that can be written", got) from error
     return path

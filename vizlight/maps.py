@@ -135,38 +135,17 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
 #: Violet and blue over pale yellow to red and crimson, with a longer way through CIELAB than most
 #: maps, and no darker than a lightness of 40, so that black lines are seen on all of it. It is the
 #: map of bands between isolines, named ``"vizlight.bands"``.
-_BANDS = LinearSegmentedColormap.from_list(
-    "vizlight.bands",
-    [
-        "#7e57b5",
-        "#4169cf",
-        "#5fb5dd",
-        "#b9e6cf",
-        "#fdf9b0",
-        "#fdc15c",
-        "#f4743e",
-        "#d63a3a",
-        "#b0226a",
-    ],
-)
+_BANDS = LinearSegmentedColormap.from_list("vizlight.bands", [
+    "#7e57b5", "#4169cf", "#5fb5dd", "#b9e6cf", "#fdf9b0", "#fdc15c", "#f4743e", "#d63a3a",
+    "#b0226a",
+])  # fmt: skip
 colormaps.register(_BANDS, force=True)
 #: Pale to deep blue over green and yellow to red and violet, as on maps of rain: amounts that stand
 #: out from a white ground, named ``"vizlight.amounts"``.
-_AMOUNTS = LinearSegmentedColormap.from_list(
-    "vizlight.amounts",
-    [
-        "#b5dcf3",
-        "#6fb1e8",
-        "#3f78d0",
-        "#2f9f8f",
-        "#7cc25a",
-        "#efe05a",
-        "#f79a3c",
-        "#dc4438",
-        "#a3256f",
-        "#5b2a86",
-    ],
-)
+_AMOUNTS = LinearSegmentedColormap.from_list("vizlight.amounts", [
+    "#b5dcf3", "#6fb1e8", "#3f78d0", "#2f9f8f", "#7cc25a", "#efe05a", "#f79a3c", "#dc4438",
+    "#a3256f", "#5b2a86",
+])  # fmt: skip
 colormaps.register(_AMOUNTS, force=True)
 #: Colours of a table of bands.
 _FINE = 1024

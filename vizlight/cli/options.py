@@ -415,16 +415,9 @@ def _name_or_vector(_: str, text: str) -> object:
 
 #: Options whose text is read in a way of its own: type, reader, and description.
 READ: Mapping[str, tuple[object, Callable[[str, Foreign], object], str]] = {
-    "tangents": (
-        str | None,
-        lambda _, text: text,
-        "Name of the vectors, or U,V for components.",
-    ),
-    "levels": (
-        str | None,
-        _levels,
-        "Number of steps (8), largest error (0.02) or values (0.2,0.4,0.6).",
-    ),
+    "tangents": (str | None, lambda _, text: text, "Name of the vectors, or U,V for components."),
+    "levels": (str | None, _levels,
+        "Number of steps (8), largest error (0.02) or values (0.2,0.4,0.6)."),
     "feature_angle": (
         str | None,
         functools.partial(fraction, expected="an angle in degrees, or auto", word="auto"),
@@ -435,32 +428,16 @@ READ: Mapping[str, tuple[object, Callable[[str, Foreign], object], str]] = {
         functools.partial(fraction, expected="compensated, or a number", word="compensated"),
         "Exponent of the diffuse term: compensated, or a number: 1, 2.",
     ),
-    "facing": (
-        str,
-        lambda _, text: text.replace("-", " "),
-        "Side that is lit: auto, eye, outward or as-given.",
-    ),
-    "toward": (
-        str | None,
-        _name_or_vector,
-        "Direction x,y,z to which fibres bend, or name of an array.",
-    ),
-    "up": (
-        str | None,
-        _name_or_vector,
-        "Direction x,y,z of the sky's half space. Default: all round.",
-    ),
-    "hyperplane": (
-        str | None,
-        hyperplane,
-        "Hyperplane NORMAL:OFFSET that cuts the mesh: 0,0,0,1:0.2.",
-    ),
-    "rotation": (
-        list[str] | None,
-        _rotations,
-        "Turn PLANE:ANGLE in radians, such as xw:0.5.",
-    ),
-}
+    "facing": (str, lambda _, text: text.replace("-", " "),
+        "Side that is lit: auto, eye, outward or as-given."),
+    "toward": (str | None, _name_or_vector,
+        "Direction x,y,z to which fibres bend, or name of an array."),
+    "up": (str | None, _name_or_vector,
+        "Direction x,y,z of the sky's half space. Default: all round."),
+    "hyperplane": (str | None, hyperplane,
+        "Hyperplane NORMAL:OFFSET that cuts the mesh: 0,0,0,1:0.2."),
+    "rotation": (list[str] | None, _rotations, "Turn PLANE:ANGLE in radians, such as xw:0.5."),
+}  # fmt: skip
 
 
 def keywords(how: Foreign) -> Keywords:

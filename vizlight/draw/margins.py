@@ -9,7 +9,6 @@ import textwrap
 
 import numpy as np
 import pyvista as pv
-from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkRenderingCore import (
     vtkActor2D,
     vtkCoordinate,
@@ -25,6 +24,7 @@ from vizlight.draw.scalar_bars import LEAST, LETTER, LINE, wrapped
 from vizlight.draw.ticks import along_bar, numerals_of
 from vizlight.filters.key import BEYOND, LEVELS, NAMES, RANGE, SCALE, SWATCH, TITLE, WORDS
 from vizlight.filters.tint import RGB
+from vizlight.vtk.cells import new_points
 
 #: Distance from the edges, and height of letters, as shares of the shorter side of the picture.
 MARGIN, LETTERS = 0.025, 0.032
@@ -442,10 +442,7 @@ class MarginKey:
             label.SetInput(word.removesuffix(end) if visible else "")
 
     def _move(self, places: Array) -> None:
-        moved = vtkPoints()
-        for point in places:
-            moved.InsertNextPoint(*point)
-        self._mesh.SetPoints(moved)
+        self._mesh.SetPoints(new_points(places.astype(np.float32)))
 
 
 def band_share(size: tuple[int, int]) -> float:

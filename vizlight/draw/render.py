@@ -44,25 +44,10 @@ from vizlight.shading.results import DEFAULT_NAME, VALID
 from vizlight.vtk.polylines import has_lines_only
 
 __all__ = [
-    "Backend",
-    "BackendError",
-    "Panel",
-    "PlotterKeywords",
-    "Probe",
-    "both_sides",
-    "box_axes",
-    "box_edges",
-    "camera_on",
-    "canvas",
-    "captions",
-    "choose_backend",
-    "make_plotter",
-    "over_shoulder",
-    "pictures",
-    "probe",
-    "save",
-    "save_png",
-]
+    "Backend", "BackendError", "Panel", "PlotterKeywords", "Probe", "both_sides", "box_axes",
+    "box_edges", "camera_on", "canvas", "captions", "choose_backend", "make_plotter",
+    "over_shoulder", "pictures", "probe", "save", "save_png",
+]  # fmt: skip
 
 AntiAliasing = Literal["auto", "ssaa", "msaa", "fxaa"]
 PictureLight = Literal["auto", "points"]

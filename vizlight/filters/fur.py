@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -324,6 +325,9 @@ class _Coat:
 
     def __init__(self, surface: pv.PolyData, skin: pv.PolyData, options: FurOptions) -> None:
         self.options = options
+        shape = {name: getattr(options, name) for name in ("segments", "bend", "curl", "turns")}
+        #: Function of the points of fibres less their roots.
+        self._strands = functools.partial(geometry.strands, **shape)
         self.origin = blocks.near_origin(skin)
         #: Type of the points.
         self.kind = np.dtype(np.float64)
@@ -449,7 +453,7 @@ class _Coat:
         if toward is not None and toward.shape[1] > 1:
             toward = kernels.unit(next(columns))[0]
         length = next(columns)[0] if isinstance(self.length, np.ndarray) else self.length
-        return root, normal, way, self._strands(way, length, toward, phase), inside
+        return root, normal, way, self._strands(way, length, toward=toward, phase=phase), inside
 
     def _ways(self, normal: Array, vector: Array | None) -> tuple[Array, int]:
         """Return unit directions at the root, and how many of the vectors point inward."""
@@ -463,28 +467,13 @@ class _Coat:
         way[:, inside] *= -1
         return way, int(np.count_nonzero(inside))
 
-    def _strands(
-        self, way: Array, length: Array | float, toward: Array | None, phase: Array | None
-    ) -> Array:
-        """Return the points of fibres less their roots."""
-        return geometry.strands(
-            way,
-            length,
-            toward=toward,
-            phase=phase,
-            segments=self.options.segments,
-            bend=self.options.bend,
-            curl=self.options.curl,
-            turns=self.options.turns,
-        )
-
     def skin_heights(self) -> Array:
         """Return the height of a fibre that stood on each point of the skin."""
         # A fibre is grown on each point of the skin, to know how much fur covers it.
         normal = kernels.unit(np.ascontiguousarray(self.normals.T))[0]
         way, _ = self._ways(normal, None if self.vectors is None else self.vectors.T)
         toward = None if self.toward is None else self.toward.T
-        offsets = self._strands(way, self.length, toward, None)
+        offsets = self._strands(way, self.length, toward=toward)
         return np.asarray(self._heights(offsets, normal).max(axis=0))
 
     def _heights(self, offsets: Array, normal: Array) -> Array:

@@ -427,11 +427,7 @@ def _blocks(
     surface = pv.PolyData()
     if len(bands.values):
         surface.points = points
-        surface.SetPolys(
-            pv.CellArray.from_arrays(
-                np.asarray(bands.offsets, dtype=int), np.asarray(bands.corners, dtype=int)
-            )
-        )
+        surface.SetPolys(blocks.cell_array(bands.corners, bands.offsets))
     surface.cell_data[part_name(name, "band")] = bands.band
     if patches:
         surface.cell_data[part_name(name, "patch")] = bands.patch

@@ -189,15 +189,8 @@ def project(
             if option in LIGHT_ALONE:
                 expected = "an option of project, or scene= beside an option of illuminate"
                 raise TypeError(_check.message(option, expected, "neither"))
-    job = Turning(
-        rotation=options.rotation,
-        hyperplane=options.hyperplane,
-        distance=options.distance,
-        positions=options.positions or POSITION,
-        frame=options.frame,
-        turned=tuple(options.turned or ()),
-        cut=options.cut,
-    )
+    names = [field.name for field in dataclasses.fields(Turning)]
+    job = Turning(**{name: getattr(options, name) for name in names})
 
     def lit(shown: pv.DataSet | pv.MultiBlock, when: LightWhen) -> pv.DataSet | pv.MultiBlock:
         if scene is None or options.light != when:

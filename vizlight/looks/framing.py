@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import pyvista as pv
 import scipy
+from numpy.typing import ArrayLike
 
 from vizlight._types import Array, Bools, Indices, Vector
 from vizlight.looks.contents import LAYER, Contents
@@ -90,8 +91,8 @@ def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Vi
         return _above(mesh, contents.flat_axis)
     if mesh.n_cells and mesh.max_cell_dimensionality == 2 and isinstance(mesh, pv.PolyData):
         return _of_surface(mesh, shown)
-    points = _finite_points(mesh)
-    extent = np.ptp(points, axis=0) if len(points) else points[:0]
+    points = _finite(mesh.points)
+    extent = np.ptp(points, axis=0) if len(points) else points
     if contents.dimension == 3 and len(extent) == 3 and extent.min() < LAYER * np.median(extent):
         # Data in a slab, such as a flow between two plates, are seen across it.
         return _above(mesh, int(np.argmin(extent)))
@@ -103,8 +104,7 @@ def _vectors(mesh: pv.DataSet, shown: str | None) -> Array | None:
     """Return some finite vectors of the points of a mesh, None if it has none."""
     if shown is None or shown not in mesh.point_data or mesh.point_data[shown].ndim != 2:
         return None
-    rows = _some(np.asarray(mesh.point_data[shown], dtype=np.float64))
-    return rows[np.isfinite(rows).all(axis=1)]
+    return _finite(mesh.point_data[shown])
 
 
 def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
@@ -116,7 +116,7 @@ def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
         upward = {"time": "time", "latitude": "north"}.get(section[1].title, "height")
         return Viewpoint(toward, up, True, f"with {upward} up")
     right = np.cross(up, toward)
-    points = _finite_points(mesh)
+    points = _finite(mesh.points)
     flat = np.stack([points @ right, points @ np.asarray(up)], axis=1)
     if len(flat) > 2:
         _, values, axes = np.linalg.svd(flat - flat.mean(axis=0), full_matrices=False)
@@ -131,7 +131,7 @@ def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
 def _of_surface(surface: pv.PolyData, shown: str | None) -> Viewpoint:
     faces, corners = _triangles(surface)
     if not len(corners):
-        return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
+        return _of_points(_finite(surface.points))
     corners, normals = _with_normals(corners)
     areas = np.linalg.norm(normals, axis=1)
     total = normals.sum(axis=0)
@@ -277,7 +277,7 @@ def eye_around(surface: pv.PolyData, *, cut: bool = False) -> Viewpoint:
     """
     _, corners = _triangles(surface)
     if not len(corners):
-        return _of_points(_some(np.asarray(surface.points, dtype=np.float64)))
+        return _of_points(_finite(surface.points))
     corners, normals = _with_normals(corners)
     ways = _ways(DIAGONALS, ABOVE_BOX) if cut else _ways()
     return _around(corners, normals, _creases(surface), ways)
@@ -291,7 +291,7 @@ def eye_across(mesh: pv.PolyData) -> Viewpoint:
     mesh : pyvista.PolyData
         Mesh with points.
     """
-    points = _finite_points(mesh)
+    points = _finite(mesh.points)
     if len(points) < 2:
         return ISOMETRIC
     axes = np.linalg.eigh(np.cov(points.T))[1].T
@@ -311,7 +311,7 @@ def eye_on_body(mesh: pv.DataSet) -> Viewpoint:
     mesh : pyvista.DataSet
         Mesh with points, x to the right, y forward and z up.
     """
-    points = _finite_points(mesh)
+    points = _finite(mesh.points)
     if not len(points):
         return ISOMETRIC
     low, middle, high = np.percentile(points, (5, 50, 95), axis=0)
@@ -354,7 +354,6 @@ def _length_across(corners: Array, areas: Array, way: Array) -> float:
 
 def _of_points(points: Array, vectors: Array | None = None) -> Viewpoint:
     """Return the eye from which points spread most, and vectors run across the picture."""
-    points = points[np.isfinite(points).all(axis=1)]
     if len(points) < 2:
         return ISOMETRIC
     spreads = []
@@ -496,14 +495,11 @@ def _triangles(surface: pv.PolyData) -> tuple[Indices, Array]:
     return places[kept], corners[kept]
 
 
-def _some(points: Array) -> Array:
-    return points[:: max(len(points) // SAMPLE, 1)]
-
-
-def _finite_points(mesh: pv.DataSet) -> Array:
-    """Return some of the points of a mesh, without those that are not finite."""
-    points = _some(np.asarray(mesh.points, dtype=np.float64))
-    return points[np.isfinite(points).all(axis=1)]
+def _finite(values: ArrayLike) -> Array:
+    """Return those of some rows, evenly spaced, that are finite."""
+    rows: Array = np.asarray(values, dtype=np.float64)
+    rows = rows[:: max(len(rows) // SAMPLE, 1)]
+    return rows[np.isfinite(rows).all(axis=1)]
 
 
 def _vector(values: Array) -> Vector:

@@ -49,30 +49,24 @@ from vizlight.vtk.topology import place_numbers
 _INP_HEAD = 64
 #: Package that reads the files of a suffix, and the extra that installs it, if one does.
 PACKAGES = {
-    ".trk": ("nibabel", "tracts"),
-    ".tck": ("nibabel", "tracts"),
-    ".trx": ("trx-python", "tracts"),
-    ".gii": ("nibabel", "tracts"),
-    ".nii": ("nibabel", "tracts"),
-    ".mgz": ("nibabel", "tracts"),
-    ".img": ("nibabel", "tracts"),
-    ".las": ("laspy", "formats"),
-    ".laz": ("laspy", "formats"),
-    ".cif": ("gemmi", "formats"),
-} | dict.fromkeys(density_maps.SUFFIXES, ("gemmi", "formats")) | dict.fromkeys(
-    cf_grids.NETCDF, ("xarray", "formats")
-) | dict.fromkeys(
-    cf_grids.GRIB, ("cfgrib", "")
-) | dict.fromkeys(cf_grids.ZARR, ("zarr", "")) | dict.fromkeys(
-    (
-        ".avs", ".bdf", ".f3grid", ".fem", ".mdpa", ".mesh", ".meshb",
-        ".msh", ".nas", ".post", ".tec", ".ugrid", ".vol",
-        ".wkt", ".xmf",
-    ),
-    ("meshio", "formats"),
-) | dict.fromkeys((".h5m", ".med"), ("h5py", "formats")) | dict.fromkeys(
-    georeference.SUFFIXES, ("rasterio", "maps")
-)  # fmt: skip
+    suffix: (package, extra)
+    for package, extra, suffixes in (
+        ("nibabel", "tracts", (".trk", ".tck", ".gii", ".nii", ".mgz", ".img")),
+        ("trx-python", "tracts", (".trx",)),
+        ("laspy", "formats", (".las", ".laz")),
+        ("gemmi", "formats", (".cif", *density_maps.SUFFIXES)),
+        ("xarray", "formats", cf_grids.NETCDF),
+        ("cfgrib", "", cf_grids.GRIB),
+        ("zarr", "", cf_grids.ZARR),
+        ("h5py", "formats", (".h5m", ".med")),
+        ("rasterio", "maps", georeference.SUFFIXES),
+        ("meshio", "formats", (
+            ".avs", ".bdf", ".f3grid", ".fem", ".mdpa", ".mesh", ".meshb", ".msh", ".nas", ".post",
+            ".tec", ".ugrid", ".vol", ".wkt", ".xmf",
+        )),
+    )
+    for suffix in suffixes
+}  # fmt: skip
 #: Name under which a package is imported, where that is another.
 MODULES = {"trx-python": "trx.trx_file_memmap"}
 #: Modules that a package loads when it reads a file.

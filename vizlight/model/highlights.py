@@ -30,17 +30,9 @@ from vizlight.model.brightness import dimensions
 from vizlight.model.frames import result
 
 __all__ = [
-    "MaximumError",
-    "best_factor",
-    "blinn_from_phong",
-    "exchange_rate",
-    "max_pixel_error",
-    "phong_from_blinn",
-    "pixel_error",
-    "required_factor",
-    "simple_factor",
-    "sphere_error",
-]
+    "MaximumError", "best_factor", "blinn_from_phong", "exchange_rate", "max_pixel_error",
+    "phong_from_blinn", "pixel_error", "required_factor", "simple_factor", "sphere_error",
+]  # fmt: skip
 
 
 Measure = Literal["worst", "rms", "volume"]

@@ -279,10 +279,7 @@ def camera_on(
     parts = pieces_of(sources, _check.positive("slab", slab))
     work = RetryingMap(map, RETRIES, progress_bar)
     if job.contour is not None and job.level is None:
-        pairs = _surveyed(parts, job, work)
-        job = dataclasses.replace(
-            job, level=sum(_ends([facts for _, facts in pairs], job.contour)) / 2
-        )
+        job = _with_level(job, job.contour, _surveyed(parts, job, work))
     calls = [(piece, job, direction, up, aspect) for piece in parts]
     # Each worker sends only the few points on which a camera depends.
     outer_points = work.each(task.outermost, calls, "camera")
@@ -426,9 +423,7 @@ def _prepared(parts: list[Piece], job: Job, work: RetryingMap) -> tuple[list[Pie
     pairs = _surveyed(parts, job, work)
     boxes = np.array([facts.bounds for _, facts in pairs]).reshape(-1, 3, 2)
     if job.contour is not None and job.level is None:
-        job = dataclasses.replace(
-            job, level=sum(_ends([facts for _, facts in pairs], job.contour)) / 2
-        )
+        job = _with_level(job, job.contour, pairs)
     # The depth belongs to the isosurface, if there is one, whose level is known by now.
     if open_cue:
         calls = [(piece, job) for piece, _ in pairs]
@@ -454,6 +449,11 @@ def _surveyed(parts: list[Piece], job: Job, work: RetryingMap) -> list[tuple[Pie
             text = _check.message("sources", expected, got, remedy)
             raise PieceError(f"piece {piece.name}: {text}")
     return pairs
+
+
+def _with_level(job: Job, contour: str, pairs: list[tuple[Piece, PieceSummary]]) -> Job:
+    """Return a job with the level in the middle of the range of the contoured array."""
+    return dataclasses.replace(job, level=sum(_ends([facts for _, facts in pairs], contour)) / 2)
 
 
 def _by_faces(job: Job) -> bool:

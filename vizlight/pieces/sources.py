@@ -50,6 +50,11 @@ class PieceError(ValueError):
     """A piece of the data cannot be read, lit or written; the message begins with its name."""
 
 
+def _wrong(expected: str, got: str, remedy: str = "") -> PieceError:
+    """Return the error of sources that are no pieces."""
+    return PieceError(_check.message("sources", expected, got, remedy))
+
+
 @dataclass(frozen=True)
 class FilePiece:
     """A file, or one partition of a VTKHDF file, of cells in any order.
@@ -304,14 +309,14 @@ def pieces_of(sources: object, slab: float) -> list[Piece]:
         elif isinstance(source, str | Path):
             for path in _paths(source):
                 if path.resolve() in taken:
-                    raise PieceError(_check.message("sources", "each file once", f"'{path}' twice"))
+                    raise _wrong("each file once", f"'{path}' twice")
                 taken.add(path.resolve())
                 pieces += _of_file(path, slab)
         else:
             expected = "a path, a pattern or a vizlight.pieces.Slabs"
             raise TypeError(_check.message("sources", expected, type(source).__name__))
     if not pieces:
-        raise PieceError(_check.message("sources", "at least one piece", "none"))
+        raise _wrong("at least one piece", "none")
     return pieces
 
 
@@ -328,10 +333,9 @@ def _paths(source: str | Path) -> list[Path]:
         matches = sorted(Path(file) for file in glob.glob(text, recursive=True))  # noqa: PTH207
         if matches:
             return matches
-        raise PieceError(_check.message("sources", "a pattern that files match", repr(text)))
+        raise _wrong("a pattern that files match", repr(text))
     remedy = f"name its files, as '{text}/*.vtu'" if what == "a folder" else ""
-    got = f"{_check.describe(text)} ({what})"
-    raise PieceError(_check.message("sources", "a file", got, remedy))
+    raise _wrong("a file", f"{_check.describe(text)} ({what})", remedy)
 
 
 def _of_file(path: Path, slab: float) -> list[Piece]:
@@ -340,8 +344,7 @@ def _of_file(path: Path, slab: float) -> list[Piece]:
     if suffix in INDICES:
         pieces = [piece for file in index_files(path) for piece in _of_file(file, slab)]
         if not pieces:
-            got = f"'{path}' (it names none)"
-            raise PieceError(_check.message("sources", "an index of files", got))
+            raise _wrong("an index of files", f"'{path}' (it names none)")
         return pieces
     is_grid = suffix in STRUCTURED
     if suffix in HDF:
@@ -362,14 +365,14 @@ def _size(path: Path) -> tuple[Extent, float]:
     info = reader.GetOutputInformation(0)
     whole: Foreign = info.Get(pipeline.WHOLE_EXTENT()) if info.Has(pipeline.WHOLE_EXTENT()) else ()
     if len(whole) != 6 or any(whole[2 * i + 1] < whole[2 * i] for i in range(3)):
-        raise PieceError(_check.message("sources", "a grid with nodes", f"'{path}'"))
+        raise _wrong("a grid with nodes", f"'{path}'")
     # A corner of the grid tells the types of the arrays and their components.
     reader.UpdateExtent(
         [min(whole[2 * (i // 2)] + i % 2, whole[2 * (i // 2) + 1]) for i in range(6)]
     )
     mesh = pv.wrap(reader.GetOutputDataObject(0))
     if not mesh.n_points:
-        raise PieceError(_check.message("sources", "a file that can be read", f"'{path}'"))
+        raise _wrong("a file that can be read", f"'{path}'")
     arrays = [*mesh.point_data.values(), *mesh.cell_data.values()]
     each = sum(array.itemsize * math.prod(array.shape[1:]) for array in arrays)
     # A structured grid stores three coordinates of 8 bytes for each node beside its arrays.
@@ -418,8 +421,7 @@ def index_files(path: Path) -> list[Path]:
     try:
         root = ET.parse(path).getroot()
     except (ET.ParseError, OSError) as error:
-        got = f"'{path}' ({error})"
-        raise PieceError(_check.message("sources", "an index in XML", got)) from error
+        raise _wrong("an index in XML", f"'{path}' ({error})") from error
     paths = []
     for element in root.iter():
         # Indices of parallel files name their pieces by one attribute, multiblock files by another.
@@ -427,8 +429,7 @@ def index_files(path: Path) -> list[Path]:
         if name:
             paths.append(path.parent / name)
             if not paths[-1].is_file():
-                text = f"'{path}' names '{paths[-1]}' (no such file)"
-                raise PieceError(_check.message("sources", "pieces that exist", text))
+                raise _wrong("pieces that exist", f"'{path}' names '{paths[-1]}' (no such file)")
     return paths
 
 
@@ -459,6 +460,5 @@ def _informed(path: Path) -> Foreign:
     with messages.captured_errors() as errors:
         reader.UpdateInformation()
     if errors:
-        got = f"'{path}' ({errors[0]})"
-        raise PieceError(_check.message("sources", "a file that can be read", got))
+        raise _wrong("a file that can be read", f"'{path}' ({errors[0]})")
     return reader

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -81,15 +82,8 @@ class Shading:
         """Return the light of some points, with a share of the time."""
         share = (rows.stop - rows.start) / max(self.luminance.size, 1)
         # One by one: of many small meshes each has a part of its own.
-        return Shading(
-            luminance=self.luminance[rows],
-            valid=self.valid[rows],
-            diffuse=None if self.diffuse is None else self.diffuse[rows],
-            specular=None if self.specular is None else self.specular[rows],
-            rgb=None if self.rgb is None else self.rgb[rows],
-            plan=self.plan,
-            seconds=self.seconds * share,
-        )
+        parts = {name: array[rows] for name, array in self.arrays().items()}
+        return dataclasses.replace(self, **parts, seconds=self.seconds * share)  # type: ignore[arg-type]
 
 
 def shade_block(plan: Plan, rows: Slice, inputs: ShadingInputs, output: Shading) -> None:

@@ -27,18 +27,9 @@ from vizlight.shading.plan import Plan, decide
 Progress: TypeAlias = Callable[[int, int], None]
 
 __all__ = [
-    "ArraySource",
-    "Model",
-    "Plan",
-    "Precision",
-    "Shading",
-    "ShadingInputs",
-    "ShadingOptions",
-    "depth_range",
-    "plan",
-    "run",
-    "shade",
-]
+    "ArraySource", "Model", "Plan", "Precision", "Shading", "ShadingInputs", "ShadingOptions",
+    "depth_range", "plan", "run", "shade",
+]  # fmt: skip
 
 
 @named

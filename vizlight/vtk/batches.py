@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
 
 from vizlight._types import Dataset, Foreign, Indices
@@ -19,6 +18,7 @@ from vizlight.vtk.cells import (
     grid_cells,
     has_marks,
     n_points,
+    new_points,
     point_data,
     vtk_points,
 )
@@ -174,9 +174,7 @@ def _joined(members: Sequence[_Member], names: Sequence[str]) -> Batch | None:
     if not alike or not np.isfinite(rows).all() or not rows.any(axis=1).all():
         return None
     whole: Foreign = vtkPolyData() if isinstance(model.mesh, vtkPolyData) else vtkUnstructuredGrid()
-    places = vtkPoints()
-    places.SetData(as_vtk(points))
-    whole.SetPoints(places)
+    whole.SetPoints(new_points(points))
     by_kind = zip(*(member.cells for member in members), strict=True)
     cells = [_cells(of_kind, first) for of_kind in by_kind]
     if isinstance(model.mesh, vtkPolyData):

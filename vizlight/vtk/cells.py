@@ -215,6 +215,13 @@ def finite_points(points: Raw) -> Bools:
     return np.asarray(finite.all(axis=1), dtype=np.bool_)
 
 
+def new_points(rows: AnyArray) -> vtkPoints:
+    """Return points with a copy of some rows."""
+    points = vtkPoints()
+    points.SetData(as_vtk(rows))
+    return points
+
+
 def new_cells(ids: AnyArray, ends: AnyArray) -> vtkCellArray:
     """Return cells by their corners, one cell after the other, and where each begins."""
     cells = vtkCellArray()

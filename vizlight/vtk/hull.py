@@ -11,7 +11,6 @@ from typing import NamedTuple, TypeAlias, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
-from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (
     VTK_BEZIER_CURVE,
     VTK_BEZIER_WEDGE,
@@ -44,6 +43,7 @@ from vizlight.vtk.cells import (
     has_marks,
     mixed_corners,
     new_cells,
+    new_points,
     places,
     point_data,
     result,
@@ -94,9 +94,7 @@ def as_lagrange(grid: vtkUnstructuredGrid) -> vtkUnstructuredGrid:
         points_out[corners] = sums / np.einsum("ij,mjk->mik", shares, shares_of)
     out = vtkUnstructuredGrid()
     out.ShallowCopy(grid)
-    points = vtkPoints()
-    points.SetData(as_vtk(points_out))
-    out.SetPoints(points)
+    out.SetPoints(new_points(points_out))
     kinds = np.where(curved, types - VTK_BEZIER_CURVE + VTK_LAGRANGE_CURVE, types)
     out.SetCells(as_vtk(kinds.astype(np.uint8)), grid_cells(grid))
     return out
@@ -198,9 +196,8 @@ def _numbered_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
 def _with_walls(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
     """Return :func:`outer_surface` with walls beside faces and with the numbers of its cells."""
     if not mesh.GetNumberOfCells():
-        bare, points = vtkPolyData(), vtkPoints()
-        points.SetData(as_vtk(points_of(mesh, None)[:]))
-        bare.SetPoints(points)
+        bare = vtkPolyData()
+        bare.SetPoints(new_points(points_of(mesh, None)[:]))
         bare.GetCellData().AddArray(as_vtk(np.zeros(0, np.intp), NUMBERS))
         return bare, np.arange(mesh.GetNumberOfPoints())
     curved = is_curved(mesh)
@@ -306,8 +303,7 @@ def _merged(surface: vtkPolyData, ids: Indices) -> tuple[vtkPolyData, Indices]:
     """Return a surface with faces that share their points: VTK gives each curved face its own."""
     points, first, number = np.unique(ids, return_index=True, return_inverse=True)
     merged = vtkPolyData()
-    merged.SetPoints(vtkPoints())
-    merged.GetPoints().SetData(as_vtk(places(surface)[first]))
+    merged.SetPoints(new_points(places(surface)[first]))
     for get, put in (
         (surface.GetVerts, merged.SetVerts),
         (surface.GetLines, merged.SetLines),
@@ -371,10 +367,9 @@ def outer_faces(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
         corners, ends, cells = _without(inside, corners, ends, cells)
     marked = unseen(mesh, cells, lambda: (corners, ends))
     corners, ends, cells = _without(marked, corners, ends, cells)
-    points, whole = vtkPoints(), vtkPolyData()
+    whole = vtkPolyData()
     origin, corners = np.unique(corners, return_inverse=True)
-    points.SetData(as_vtk(places(mesh)[origin]))
-    whole.SetPoints(points)
+    whole.SetPoints(new_points(places(mesh)[origin]))
     whole.SetPolys(new_cells(corners, ends))
     if flat:
         whole.GetCellData().AddArray(as_vtk(cells, NUMBERS))
@@ -414,10 +409,9 @@ def _part(
             ids = np.searchsorted(own, ids)
         return new_cells(*(each.astype(np.int32, copy=False) for each in (ids, ends)))
 
-    part, points, kinds = vtkUnstructuredGrid(), vtkPoints(), as_vtk(types)
+    part, kinds = vtkUnstructuredGrid(), as_vtk(types)
     dense = len(own) == high - low
-    points.SetData(as_vtk(places(grid)[low:high] if dense else places(grid)[own]))
-    part.SetPoints(points)
+    part.SetPoints(new_points(places(grid)[low:high] if dense else places(grid)[own]))
     if _POLYHEDRON not in types:
         part.SetCells(kinds, cells(ids, ends))
         return part, own

@@ -156,12 +156,10 @@ class _Drawn:
         else:
             parts = [self._faces(slice(None), error)]
             fills = [*parts[0][2]]
-        courses = [_in_channels(course, 3) for course in self.courses]
-        strokes: list[Item] = [*strokes_of(courses, error)]
         count, reached = sum(part[0] for part in parts), max(part[1] for part in parts)
         kind = "levels of red, green and blue" if plates else "colours"
         words = f"{count} {kind}, each within {reached:.1f} of 255 of the light"
-        return _Attempt(self._written(suffix, fills, strokes, words), error, reached)
+        return _Attempt(self._written(suffix, fills, error, words), error, reached)
 
     def _faces(self, channels: Slice, error: float) -> tuple[int, float, list[Fill]]:
         """Return the number of colours of channels, their largest error, and their faces.
@@ -197,20 +195,17 @@ class _Drawn:
         shown = np.broadcast_to(mean, (*mean.shape[:2], 3))
         size = (columns / self.scale, rows / self.scale)
         picture: list[Item] = [Picture(np.ascontiguousarray(shown), self.place, size, quality)]
-        courses = [_in_channels(course, 3) for course in self.courses]
-        strokes: list[Item] = [*strokes_of(courses, COARSEST)]
-        data = self._written(suffix, picture, strokes, "pixels, strokes and words")
+        data = self._written(suffix, picture, COARSEST, "pixels, strokes and words")
         return _Attempt(data, 0.0, np.inf)
 
-    def _written(self, suffix: str, faces: list[Item], lines: list[Item], words: str) -> bytes:
+    def _written(self, suffix: str, faces: list[Item], error: float, words: str) -> bytes:
+        """Return a file of faces, with strokes within an error, all of three channels."""
+        colors = (np.broadcast_to(each.color, (len(each.color), 3)) for each in self.courses)
+        courses = [each._replace(color=c) for each, c in zip(self.courses, colors, strict=True)]
+        lines: list[Item] = [*strokes_of(courses, error)]
         groups = {"faces": faces, "lines": lines, "words": self.words}
         sheet = Sheet(self.size, self.background, groups, words)
         return svg_of(sheet).encode() if suffix == ".svg" else pdf_of(sheet)
-
-
-def _in_channels(course: Course, count: int) -> Course:
-    """Return a course with some channels of colour, all alike where it had one."""
-    return course._replace(color=np.broadcast_to(course.color, (len(course.color), count)))
 
 
 def _span(shown: Bools, scale: int) -> Slice:

@@ -15,14 +15,9 @@ from vizlight.model import frames
 from vizlight.model.frames import default_rtol, orthonormalize
 
 __all__ = [
-    "image_and_depth",
-    "perspective",
-    "plane_rotation",
-    "push_forward",
-    "push_frame",
-    "rotation",
-    "turn",
-]
+    "image_and_depth", "perspective", "plane_rotation", "push_forward", "push_frame",
+    "rotation", "turn",
+]  # fmt: skip
 
 AXES = "xyzw"
 #: Matrices whose rows deviate more than this from orthonormality are rejected. A matrix that was
