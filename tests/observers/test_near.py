@@ -10,6 +10,7 @@ import pyvista as pv
 import vizlight
 from vizlight import Light, Scene, View
 from vizlight.draw.sources import with_sharp_edges
+from vizlight.mesh.subdivision import simplices
 from vizlight.observers import legibility, samples
 from vizlight.observers import near as near_cells
 from vizlight.observers.near import near
@@ -17,6 +18,7 @@ from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import tangents_of
 from vizlight.vtk.drawn import DrawnSegments, DrawnTriangles
 
+FACES = "Triangle", "Quadrilateral"
 SCENE = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(1, 2, 2)))
 
 
@@ -455,13 +457,24 @@ def test_tangents_of_the_cells_of_lines_and_points_are_those_of_the_whole(name, 
         samples.part_on(lines, SCENE, LightOptions(tangents=name, conditioned=True))
 
 
-def test_curved_faces_with_vectors_of_cells_have_their_normals(monkeypatch):
-    monkeypatch.setattr(samples, "WHOLE", 0)
-    mesh = with_vectors(pv.examples.cells.QuadraticTriangle())
-    part = samples.part_on(mesh, SCENE, LightOptions(tangents="W")).near(np.arange(4))
-    assert part.inputs.normals[:].any(axis=1).all()
-    flat = samples.part_on(mesh, SCENE, LightOptions(tangents="W"), lit=False)
-    assert flat.inputs.tangents is None
+@pytest.mark.parametrize("kind", [k + n for k in ("Quadratic", "BiQuadratic") for n in FACES])
+def test_curved_faces_are_near_what_they_are_in_the_whole(kind, monkeypatch):
+    one = getattr(pv.examples.cells, kind)()
+    cells = [one.translate((i, j, 0.2 * i * j)) for i in range(3) for j in range(3)]
+    mesh = with_vectors(pv.merge(cells, merge_points=True).cast_to_unstructured_grid())
+    mesh.points[:, 2] += 0.2 * np.sin(5 * mesh.points[:, 0])
+    np.testing.assert_array_equal(DrawnTriangles.of(mesh)[:], simplices(mesh))
+    for light in (LightOptions(tangents="W"), LightOptions(tangents="u,v,w"), LightOptions()):
+        values, parts = np.arange(9.0), []
+        for size in (1 << 17, 0):
+            monkeypatch.setattr(samples, "WHOLE", size)
+            part = samples.part_on(mesh, SCENE, light, values=values, flat=True)
+            parts.append(part.near(np.arange(len(part.cells))[::-2]))
+        assert (parts[0].large, parts[1].large) == (False, True)
+        np.testing.assert_array_equal(parts[0].values, parts[1].values)
+        for rows in ("points", "normals", "tangents")[: 2 + (light.tangents is not None)]:
+            found, same = (getattr(p.inputs, rows)[:][p.cells] for p in parts)
+            np.testing.assert_allclose(np.abs(found), np.abs(same), atol=2e-6)
 
 
 @pytest.mark.parametrize("name", ["W", "u,v,w"])
