@@ -10,6 +10,7 @@ import pyvista as pv
 import vizlight
 from vizlight import Light, Scene, View
 from vizlight.draw.sources import with_sharp_edges
+from vizlight.mesh.subdivision import simplices
 from vizlight.observers import legibility, samples
 from vizlight.observers import near as near_cells
 from vizlight.observers.near import near
@@ -17,6 +18,7 @@ from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import tangents_of
 from vizlight.vtk.drawn import DrawnSegments, DrawnTriangles
 
+FACES = "Triangle", "Quadrilateral"
 SCENE = Scene(lights=Light(direction=(1, 2, 3)), view=View(direction=(1, 2, 2)))
 
 
@@ -455,13 +457,24 @@ def test_tangents_of_the_cells_of_lines_and_points_are_those_of_the_whole(name, 
         samples.part_on(lines, SCENE, LightOptions(tangents=name, conditioned=True))
 
 
-def test_curved_faces_with_vectors_of_cells_have_their_normals(monkeypatch):
-    monkeypatch.setattr(samples, "WHOLE", 0)
-    mesh = with_vectors(pv.examples.cells.QuadraticTriangle())
-    part = samples.part_on(mesh, SCENE, LightOptions(tangents="W")).near(np.arange(4))
-    assert part.inputs.normals[:].any(axis=1).all()
-    flat = samples.part_on(mesh, SCENE, LightOptions(tangents="W"), lit=False)
-    assert flat.inputs.tangents is None
+@pytest.mark.parametrize("kind", [k + n for k in ("Quadratic", "BiQuadratic") for n in FACES])
+def test_curved_faces_are_near_what_they_are_in_the_whole(kind, monkeypatch):
+    one = getattr(pv.examples.cells, kind)()
+    cells = [one.translate((i, j, 0.2 * i * j)) for i in range(3) for j in range(3)]
+    mesh = with_vectors(pv.merge(cells, merge_points=True).cast_to_unstructured_grid())
+    mesh.points[:, 2] += 0.2 * np.sin(5 * mesh.points[:, 0])
+    np.testing.assert_array_equal(DrawnTriangles.of(mesh)[:], simplices(mesh))
+    for light in (LightOptions(tangents="W"), LightOptions(tangents="u,v,w"), LightOptions()):
+        values, parts = np.arange(9.0), []
+        for size in (1 << 17, 0):
+            monkeypatch.setattr(samples, "WHOLE", size)
+            part = samples.part_on(mesh, SCENE, light, values=values, flat=True)
+            parts.append(part.near(np.arange(len(part.cells))[::-2]))
+        assert (parts[0].large, parts[1].large) == (False, True)
+        np.testing.assert_array_equal(parts[0].values, parts[1].values)
+        for rows in ("points", "normals", "tangents")[: 2 + (light.tangents is not None)]:
+            found, same = (getattr(p.inputs, rows)[:][p.cells] for p in parts)
+            np.testing.assert_allclose(np.abs(found), np.abs(same), atol=2e-6)
 
 
 @pytest.mark.parametrize("name", ["W", "u,v,w"])
@@ -550,16 +563,32 @@ def test_a_large_surface_is_read_like_a_small_one(monkeypatch):
     assert found[0] == found[1]
 
 
+def curved(n):
+    """Return an uneven sheet of biquadratic faces, on 2 n + 1 rows of nodes."""
+    i = np.arange((2 * n + 1) ** 2).reshape(2 * n + 1, -1)
+    steps = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1), (1, 1)]
+    nodes = np.stack([i[a : a + 2 * n : 2, b : b + 2 * n : 2] for a, b in steps], axis=-1)
+    x, y = np.divmod(i.ravel(), 2 * n + 1) / np.float64(n)
+    points = np.column_stack([x, y, 0.1 * np.sin(9 * x)])
+    return pv.UnstructuredGrid({pv.CellType.BIQUADRATIC_QUAD: nodes.reshape(-1, 9)}, points)
+
+
+def with_segment(mesh):
+    faces = mesh.regular_faces
+    return pv.UnstructuredGrid({9: faces, 3: np.array([[0, 1]])}, mesh.points)
+
+
 def test_memory_goes_by_the_triangles_and_not_by_the_surface():
     plane = bare(pv.Plane(i_resolution=400, j_resolution=400))
-    surface = DrawnTriangles(plane)
-    near(plane, surface, np.array([3]), LightOptions())
-    tracemalloc.start()
-    near(plane, surface, np.arange(0, len(surface), 9000), LightOptions())
-    _, most = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
-    # A table of a megabyte, and blocks of 2^16 polygons.
-    assert most < 6e6
+    for mesh in (plane, with_segment(plane), curved(200)):
+        surface = DrawnTriangles.of(mesh)
+        near(mesh, surface, np.array([3]), LightOptions())
+        tracemalloc.start()
+        near(mesh, surface, np.arange(0, len(surface), 9000), LightOptions())
+        _, most = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        # A table of a megabyte, and blocks of 2^16 polygons, whose corners may be made.
+        assert most < 13e6
 
 
 def test_memory_goes_by_the_segments_and_not_by_the_lines():

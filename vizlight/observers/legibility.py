@@ -176,7 +176,8 @@ def legibility(
 
     *direction*: hues of a disc that faces the eye and has tangents in all directions; tangents
     that run toward the eye are left out. Lines, glyphs and textures tell it by their grain: across
-    it the colours of a window of 8 arc minutes change most, of glyphs those of the whole. *slope*:
+    it the colours of a window of 8 arc minutes change most, of glyphs those of the whole, in a
+    channel for fine or in one for coarse marks. *slope*:
     lightness ranks steepness. *heading*: a key of all directions of lines, in one share of its
     light for all of the picture, since smoothed edges and halos darken lines. *shape*: a ball in
     the same light; with tangents, which are unknown, 72 of them for each normal. *value*: colours
@@ -200,7 +201,9 @@ def legibility(
     Bits are the logarithmic score of the reader's belief, ``log2(A) + E[log2 q]`` for A
     candidates, at the best share of lapses, less the score of the same answers about other places
     at random: a property that all of the data share is not read. Of order and sense they are those
-    of a yes or no, 1 at most. Below 0.3 bits a question is unreadable.
+    of a yes or no, 1 at most. The most that are possible, ``log2(A)``, are printed beside them, and
+    ``score`` divides them by those of an answer within 15 degrees of a direction, 20 of a normal, a
+    tenth of a bar or 0.15 of all ranks. Below 0.3 bits a question is unreadable.
 
     Examples
     --------

@@ -304,13 +304,14 @@ def grain_of(seen: SeenPicture, eye: Eye, seed: int) -> Array:
     noisy = seen.colors + random.normal(0.0, eye.noise, seen.colors.shape)
     # A Gaussian of the variance of the window.
     spread = WINDOW / 60 * eye.pixels_per_degree / math.sqrt(12)
+    # Derivatives of Gaussians are alike in all directions, unlike differences of pixels.
+    orders = (1, 0, 0), (0, 1, 0)
+    shading = [gaussian_filter(noisy, (spread, spread, 0.0), order) for order in orders]
     channels = np.empty((*noisy.shape[:2], CHANNELS, 3))
     for channel, fine in enumerate((1.0, max(1.0, spread / math.sqrt(2)))):
-        # Derivatives of Gaussians are alike in all directions, unlike differences of pixels.
         down, right = (
-            gaussian_filter(noisy, (fine, fine, 0.0), order)
-            - gaussian_filter(noisy, (spread, spread, 0.0), order)
-            for order in ((1, 0, 0), (0, 1, 0))
+            gaussian_filter(noisy, (fine, fine, 0.0), order) - wide
+            for order, wide in zip(orders, shading, strict=True)
         )
         for column, (a, b) in enumerate(((right, right), (right, down), (down, down))):
             channels[..., channel, column] = gaussian_filter((a * b).sum(axis=2), spread)

@@ -671,7 +671,7 @@ def _can_tell_length(places: SeenPlaces) -> bool:
 
 
 def _is_line_in_light(places: SeenPlaces) -> bool:
-    """Return whether places are on lines whose colours are those of light, and not of values."""
+    """Return whether places are on lines in the colours of light, and not of values."""
     part = places.part
     return part.kind == "line" and part.values is None and places.here.has_one_tangent
 

@@ -6,9 +6,13 @@ from functools import partial
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import (
+    VTK_BIQUADRATIC_QUAD,
+    VTK_BIQUADRATIC_TRIANGLE,
     VTK_LINE,
     VTK_POLYGON,
     VTK_QUAD,
+    VTK_QUADRATIC_QUAD,
+    VTK_QUADRATIC_TRIANGLE,
     VTK_TRIANGLE,
     vtkCellArray,
     vtkExplicitStructuredGrid,
@@ -36,6 +40,13 @@ from vizlight.vtk.cells import (
 
 #: Numbers of corners.
 SEGMENT, TRIANGLE, QUAD = 2, 3, 4
+#: Nodes of the triangles by which VTK's renderer draws curved faces.
+CURVED = {
+    VTK_QUADRATIC_TRIANGLE: "035 314 542 453",
+    VTK_QUADRATIC_QUAD: "047 415 526 637 467 456",
+    VTK_BIQUADRATIC_TRIANGLE: "036 634 645 065 314 542",
+    VTK_BIQUADRATIC_QUAD: "047 415 526 637 487 458 568 678",
+}
 #: Number of polygons that are looked at at once.
 BLOCK = 1 << 16
 #: Least number of entries of the table of marked points, beyond which some share an entry, and
@@ -81,8 +92,8 @@ class DrawnCells:
         #: Number of polygons or lines.
         self.polygons = whole.GetNumberOfCells()
         self._part, self._size = size, max(whole.IsHomogeneous(), 0)
-        self._cells = cells
-        self._ids: Indices | _GridCorners = as_numpy(whole.GetConnectivityArray())
+        self._cells, self._each = cells, 1
+        self._ids: Indices | _GridCorners | _CurvedCorners = as_numpy(whole.GetConnectivityArray())
         self._offsets = np.zeros(0, np.intp) if self._size else as_numpy(whole.GetOffsetsArray())
 
     @classmethod
@@ -106,6 +117,12 @@ class DrawnCells:
         self._size = self._ids.count
         self.polygons = len(self._ids) // self._size
 
+    def _take_curved(self, whole: vtkCellArray, nodes: str) -> None:
+        """Take the triangles of curved faces of one kind as polygons, without memory."""
+        self._ids = _CurvedCorners(as_numpy(whole.GetConnectivityArray()), nodes)
+        self._size, self._each = TRIANGLE, len(nodes.split())
+        self.polygons = len(self._ids) // TRIANGLE
+
     @property
     def shape(self) -> tuple[int, int]:
         """Shape of an array of the corners."""
@@ -116,8 +133,8 @@ class DrawnCells:
 
     def __getitem__(self, rows: Rows, /) -> Indices:
         """Return the points at the corners of some parts, shape (M, s)."""
-        if self._size == self._part:
-            return np.reshape(self._ids[:], (-1, self._part))[rows]
+        if self._size == self._part and isinstance(self._ids, np.ndarray):
+            return np.reshape(self._ids, (-1, self._part))[rows]
         return self._some(*self._places(rows))
 
     def polygon(self, rows: Rows) -> Indices:
@@ -132,7 +149,7 @@ class DrawnCells:
         """Return the cells of the mesh that some polygons or lines are."""
         if isinstance(self._cells, np.ndarray):
             return self._cells[polygon]
-        return polygon + self._cells
+        return polygon // self._each + self._cells
 
     def corners(self, polygon: Indices) -> tuple[Indices, Indices]:
         """Return the corners of some polygons, one after the other, and where each begins."""
@@ -244,8 +261,9 @@ class DrawnTriangles(DrawnCells):
     def of(cls, mesh: Dataset) -> DrawnTriangles | None:
         """Return the triangles of a mesh with faces in memory or in rows, else None.
 
-        It is a surface, a grid of plain polygons, segments among them, or one of a single layer of
-        points. Of the latter alone VTK leaves hidden cells out: their triangles are of one point.
+        It is a surface, a grid of plain polygons, segments among them, one of curved faces of one
+        kind, or one of a single layer of points. Of the latter alone VTK leaves hidden cells out:
+        their triangles are of one point.
         """
         if isinstance(mesh, vtkPolyData):
             return cls(mesh) if has_faces(mesh) else None
@@ -258,6 +276,12 @@ class DrawnTriangles(DrawnCells):
         if not isinstance(mesh, vtkUnstructuredGrid):
             return None
         kinds = {*as_numpy(mesh.GetDistinctCellTypesArray()).tolist()}
+        if len(kinds) == 1 and (nodes := CURVED.get(min(kinds))):
+            triangles = cls(vtkPolyData())
+            triangles._take_curved(grid_cells(mesh), nodes)
+            # A cell counts once at a point, however many of its triangles are there.
+            triangles.beside = True
+            return triangles
         faces = {VTK_TRIANGLE, VTK_QUAD, VTK_POLYGON}
         if not kinds & faces or kinds - faces - {VTK_LINE}:
             return None
@@ -371,6 +395,26 @@ class _GridCorners:
         above, corner = np.divmod(corner, QUAD)
         row += (corner > 1) + self._height * (layer + above)
         points: Indices = column + (corner % 3 > 0) + self._width * row
+        return points
+
+
+class _CurvedCorners:
+    """Points at the corners of the triangles of curved faces, as an array without memory."""
+
+    def __init__(self, ids: Indices, nodes: str) -> None:
+        self._ids, triangles = ids, nodes.split()
+        self._nodes = np.array([int(node) for node in "".join(triangles)])
+        self._size = int(self._nodes.max()) + 1
+
+    def __len__(self) -> int:
+        return len(self._ids) // self._size * len(self._nodes)
+
+    def __getitem__(self, index: Rows, /) -> Indices:
+        """Return the points at some corners."""
+        if isinstance(index, slice):
+            index = np.arange(*index.indices(len(self)))
+        cell, corner = np.divmod(index, len(self._nodes))
+        points: Indices = self._ids[cell * self._size + self._nodes[corner]]
         return points
 
 
