@@ -307,13 +307,13 @@ class Case:
         edges = Step("", "render.box_edges", box, camera)
         layers = [Layer(edges, BOX_EDGES | BESIDE, live=False)]
         if self.wishes.frame is None:
-            layers.append(self.words(self.wishes.box_axes(box, camera, self.axes)))
+            layers.append(self.inked(self.wishes.box_axes(box, camera, self.axes)))
         return layers
 
-    def words(self, letters: Step) -> Layer:
-        """Return the layer of letters that a step makes."""
+    def inked(self, mesh: Step) -> Layer:
+        """Return the layer of a mesh in the colour of ink, such as letters."""
         ink: Keywords = {"color": ink_on(pv.Color(self.wishes.background)), "lighting": False}
-        return Layer(letters, ink | BESIDE, live=False)
+        return Layer(mesh, ink | BESIDE, live=False)
 
     def eye(self, mesh: Step) -> Viewpoint:
         """Return from where a mesh is seen, if no view is given in its place."""

@@ -129,7 +129,7 @@ def _somas(case: Case) -> list[Layer]:
     bodies = Step("", ".threshold", points, ends, scalars="type")
     ball = Step("", "pyvista.Sphere", radius=1.0)
     balls = Step("soma", ".glyph", bodies, orient=False, scale="radius", factor=1.0, geom=ball)
-    return [case.words(balls)]
+    return [case.inked(balls)]
 
 
 def is_molecule(mesh: pv.DataSet) -> bool:

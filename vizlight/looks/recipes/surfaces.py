@@ -119,7 +119,7 @@ def values(case: Case) -> Drawing:
     if sides is None:
         layers = [Layer(mesh, shown), *edges.edges(camera)]
     else:
-        layers = [*(Layer(side, shown) for side in sides.layers()), case.words(names)]
+        layers = [*(Layer(side, shown) for side in sides.layers()), case.inked(names)]
     drawing = Drawing(
         layers, camera, scene, lit,
         words, keys,

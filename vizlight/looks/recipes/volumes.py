@@ -42,7 +42,7 @@ RINGING = 0.1
 #: the points along each axis by which that is found, and the number of values that are looked at.
 COMPACT, STEPS, SAMPLE = 0.25, 50, 100_000
 #: Colour of the skin.
-SKIN = {"paper": "#d9cabd", "dark": "#d9cabd"}
+SKIN = "#d9cabd"
 #: Direction toward the eye that sees a face, in the axes of a body.
 FACE = (0.5, 0.75, 0.45)
 #: Largest share of the ends of values within which their quartiles lie where 0 is their ground, and
@@ -320,7 +320,7 @@ def _cut_open(case: Case) -> Drawing | None:
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     around = replace(case, data=skin, contents=Contents(skin.run()), question="shape")
     light = wishes.light_of_surface()
-    drawn = {"color": SKIN[wishes.style], "scene": around.exposed(skin, camera, **light)}
+    drawn = {"color": SKIN, "scene": around.exposed(skin, camera, **light)}
     drawn |= wishes.drawn(light)
     layers = [Layer(cut, shown), Layer(skin, drawn)]
     words = f"{array.name} in a body cut open toward the eye"
