@@ -50,9 +50,9 @@ SEEN = 1000
 FLATTENED, DIFFERENT, SQUARES = 0.7, 0.5, 12
 #: Turn that takes y to z.
 Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-#: Share of the height within which points are a base, least size of one on which a thing stands, as
-#: a share of that of its shadow, and largest size of the others, as a share of this one's.
-FOOT, STANDS, SMALL_BASE = 0.02, 0.25, 0.25
+#: Shares of the height within which points are a base, even or uneven; least size of one on which a
+#: thing stands, as a share of that of its shadow, and largest of the others, as one of this one's.
+FEET, STANDS, SMALL_BASE = (0.02, 0.05), 0.25, 0.25
 #: How much more the side of a body counts than other views, and how far the middle of what is on
 #: its left is from that of the body, as a share of its width.
 NEARLY_AS_LARGE, BESIDE = 1.3, 0.1
@@ -177,18 +177,24 @@ def stands_along_y(corners: Array, areas: Array) -> bool:
         return False
     points = corners.reshape(-1, 3)
     middle = np.average(corners.mean(axis=1), axis=0, weights=areas)
-    share = _base(points, middle, 1, 1)
-    others = (_base(points, None, axis, sign) for axis, sign in ((1, -1), (2, 1), (2, -1)))
-    return share > STANDS and all(other < SMALL_BASE * share for other in others)
+    for foot in FEET:
+        share = _base(points, middle, 1, 1, foot)
+        others = (
+            _base(points, None, axis, sign, foot) for axis, sign in ((1, -1), (2, 1), (2, -1))
+        )
+        if share > STANDS and all(other < SMALL_BASE * share for other in others):
+            return True
+    return False
 
 
-def _base(points: Array, middle: Array | None, axis: int, sign: int) -> float:
+def _base(points: Array, middle: Array | None, axis: int, sign: int, foot: float) -> float:
     """Return the hull of the points at an end of an axis over that of all, seen along the axis.
 
-    0 where a middle is given that is not above it, or the hull is too small to stand on.
+    They are within a share of the height. 0 where a middle is given that is not above their hull,
+    or this is too small to stand on.
     """
     heights, flat = sign * points[:, axis], np.delete(points, axis, axis=1)
-    low = heights < heights.min() + FOOT * np.ptp(heights)
+    low = heights < heights.min() + foot * np.ptp(heights)
     # A hull is at least half of the box around it, and SciPy's hulls take a while to import.
     most = 2 * np.prod(np.ptp(flat[low], axis=0)) / (np.prod(np.ptp(flat, axis=0)) or 1.0)
     if middle is not None and most <= STANDS:

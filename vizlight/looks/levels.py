@@ -22,7 +22,7 @@ APART, FAR, UNBLENDED = 0.01, 2.0, 0.9
 FEWEST = 30
 
 
-def best_level(mesh: pv.DataSet, name: str) -> tuple[float, float]:
+def best_level(mesh: pv.DataSet, name: str, *, share: float = 1.0) -> tuple[float, float]:
     """Return the level with an isosurface through the steepest cells, and their steepness.
 
     Parameters
@@ -31,6 +31,8 @@ def best_level(mesh: pv.DataSet, name: str) -> tuple[float, float]:
         Volume.
     name : str
         Name of an array of one component.
+    share : float, default: 1.0
+        Share of the steepness of the best level with which the lowest is taken.
 
     Returns
     -------
@@ -62,6 +64,8 @@ def best_level(mesh: pv.DataSet, name: str) -> tuple[float, float]:
     best = int(np.argmax(smooth))
     if not OUTER * LEVELS <= best < (1 - OUTER) * LEVELS and scores[best] < STRONG:
         scores[best] = min(scores[best], 1.0)
+    if share < 1:
+        best = int(np.argmax(scores >= share * scores[best]))
     return _few_digits(float(candidates[best]), float(top - bottom)), float(scores[best])
 
 

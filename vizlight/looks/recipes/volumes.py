@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 LEAST_OF_BOX = 0.4
 #: Fewest voxels along each side of a scan, and the most of its sides that it closes.
 VOXELS, MOST_CLOSED = 30, 0.4
+#: Share of the steepness of the best level at which scans are drawn: thin parts are dark.
+THIN = 0.9
 #: Numbers of air and bone in computed tomography, in Hounsfield units, and how near to that of air
 #: others are its own; least share of air, and shares of bone, of such a scan.
 AIR, BONE, NEAR_AIR, MUCH_AIR, BONES = -1000.0, 300.0, 50.0, 0.05, (0.002, 0.3)
@@ -48,6 +50,8 @@ FACE = (0.5, 0.75, 0.45)
 #: Largest share of the ends of values within which their quartiles lie where 0 is their ground, and
 #: least ratio of the numbers of values beyond a level below and above it.
 GROUND, LESSER_SIDE = 0.15, 0.1
+#: Share of the squares of an orbital that is within its isosurface.
+ENCLOSED = 0.85
 #: Colours of a level below and above 0.
 LOBES = ["#4169cf", "#d63a3a"]
 #: Level of maps of densities above their mean, in their standard deviations, where nothing is
@@ -162,7 +166,8 @@ def _level(case: Case, array: Named) -> _Level | str:
     elif is_scan and is_auto and _is_gray(case, array) and _is_compact(case, array):
         return ""
     else:
-        level, contrast = levels.best_level(volume.run(), array.name)
+        share = THIN if is_scan else 1.0
+        level, contrast = levels.best_level(volume.run(), array.name, share=share)
     if contrast < levels.GOOD:
         return f"; no isosurface stands out (the steepest is {contrast:.1f} times the mean)"
     volume = _closed(volume, array.name, level) if is_scan else volume
@@ -182,6 +187,11 @@ def _size_of_both_signs(values: Array, volume: Step, array: Named) -> float | No
     rows = np.asarray(sizes[array.name], dtype=np.float64)
     sizes.point_data[array.name] = np.abs(rows)
     level, contrast = levels.best_level(sizes, array.name)
+    if molecules.PLACES in sizes.field_data:
+        # As chemists print orbitals.
+        squares = np.sort(rows**2)[::-1]
+        count = np.searchsorted(np.cumsum(squares), ENCLOSED * squares.sum())
+        level = float(f"{np.sqrt(squares[count]):.2g}")
     lesser, larger = sorted((np.sum(rows < -level), np.sum(rows > level)))
     return None if contrast < levels.GOOD or lesser < LESSER_SIDE * larger else level
 
