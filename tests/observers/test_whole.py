@@ -451,7 +451,14 @@ def test_a_texture_tells_the_course_of_vectors_that_it_runs_along(vectors, middl
     )
     assert rings.direction.median < 1
     assert rings.direction.readable > 0.95
+    assert rings.direction.most == pytest.approx(np.log2(180))
     assert rings.shape is None
+
+
+def test_faint_wide_rings_are_read_in_the_channel_of_coarse_marks():
+    found = read_texture(lambda x, y: 0.03 * np.cos(60 * np.hypot(x, y))).direction
+    # In the fine channel alone it is half of that.
+    assert found.bits > 0.5
 
 
 @pytest.mark.parametrize("waves", [60, 0])
@@ -464,6 +471,7 @@ def test_a_texture_across_vectors_or_of_one_colour_tells_no_course(waves):
 def test_a_texture_tells_speed_by_its_lightness_and_nothing_without_vectors():
     found = read_texture(lambda x, y: np.hypot(x, y) - 0.7)
     assert found.speed.spearman > 0.97
+    assert found.speed.most == 4
     assert found.speed.bits > 2
     assert found.direction.unreadable
     bare = read_texture(np.hypot, vectors=None)

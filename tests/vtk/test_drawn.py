@@ -84,6 +84,9 @@ def test_plain_polygons_of_a_grid_are_a_surface_and_other_meshes_are_not():
     plane = pv.Plane(i_resolution=3, j_resolution=2)
     grid = plane.cast_to_unstructured_grid()
     np.testing.assert_array_equal(DrawnTriangles.of(grid)[:], DrawnTriangles.of(plane)[:])
+    both = DrawnTriangles.of(pv.merge([pv.Line().cast_to_unstructured_grid(), grid]))
+    assert len(both) == 12
+    assert (both.sizes(both.around(np.arange(9))) == 4).all()
     for mesh in (pv.ImageData(dimensions=(3, 3, 3)), pv.Line(), pv.PolyData(np.eye(3)),
                  pv.UnstructuredGrid(), pv.ImageData(dimensions=(5, 1, 1))):  # fmt: skip
         assert DrawnTriangles.of(mesh) is None

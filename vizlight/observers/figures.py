@@ -30,15 +30,15 @@ class Figure:
         Bits that a reader has who is sure of the right candidate everywhere, the most possible:
         the logarithm of the number of candidates, of their classes where they are ranked.
     readable : float
-        Share of the drawn places at which the answer is right within a tolerance, less what
-        guessing gives (Abbott 1925): 0 is chance, 1 is all of the picture.
+        Share of the drawn places at which the answer is right within a tolerance, less that of
+        guessing (Abbott 1925): 0 is chance, 1 is all of the picture.
     samples : int
         Number of places.
     reason : str
         Why the question is unreadable, empty where it is not. The errors are then those of chance.
     chance : float
         Result of guessing: the median error of angles and values, the rank correlation of a
-        magnitude, the share of right answers where there are two.
+        magnitude, the share of right answers of two.
     """
 
     bits: float
@@ -351,7 +351,7 @@ class Legibility:
         Raises
         ------
         ValueError
-            If there is no such figure.
+            If no figure has such a name.
         """
         for question in questions:
             _check.choice("questions", question, QUESTIONS)
