@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,3 +49,10 @@ Vector: TypeAlias = tuple[float, ...]
 VectorLike: TypeAlias = Sequence[float] | Array
 Color: TypeAlias = tuple[float, float, float]
 ColorLike: TypeAlias = "str | VectorLike | pv.Color"
+
+# Options of light.
+Model = Literal["phong", "blinn", "cylinder"]
+Precision = Literal["float32", "float64"]
+Exponent: TypeAlias = float | Literal["compensated"]
+FeatureAngle: TypeAlias = float | Literal["auto"] | None
+Facing = Literal["auto", "eye", "outward", "as given"]

@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from pyvista.plotting.colors import get_cycler
 
 from vizlight import _check
-from vizlight._types import Keywords, Raw
+from vizlight._types import FeatureAngle, Keywords, Raw
 from vizlight.filters import relight
 from vizlight.mesh import blocks, records
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
-from vizlight.shading.options import FeatureAngle, LightOptions
+from vizlight.shading.options import LightOptions
 
 #: Options of light that a live light takes; an actor has a name of its own.
 LIGHT = {*inspect.signature(LightOptions).parameters} - {"name", "components"}

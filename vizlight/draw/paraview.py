@@ -15,7 +15,7 @@ import pyvista as pv
 from numpy.typing import ArrayLike
 
 from vizlight import _check, files
-from vizlight._types import Given
+from vizlight._types import Exponent, Facing, Given, Model
 from vizlight.draw import dialects, glsl
 from vizlight.draw.glsl import Program
 from vizlight.draw.live import NORMALS, TANGENTS, Fragments, unfit, unfit_layout
@@ -26,7 +26,7 @@ from vizlight.scene.keywords import named
 from vizlight.scene.light import WHITE
 from vizlight.shading.display import NO_DATA, NO_DATA_NAME
 from vizlight.shading.inputs import Layout
-from vizlight.shading.options import Exponent, Facing, LightOptions, Model, ShadingOptions
+from vizlight.shading.options import LightOptions, ShadingOptions
 from vizlight.shading.plan import Plan, decide
 
 __all__ = ["Shader", "save", "shader"]

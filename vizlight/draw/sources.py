@@ -10,7 +10,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._questions import QUESTIONS
-from vizlight._types import Indices, Keywords
+from vizlight._types import FeatureAngle, Indices, Keywords
 from vizlight.draw.live import lifted, on_screen
 from vizlight.filters import lighting, relight
 from vizlight.filters.key import question_of
@@ -24,7 +24,7 @@ from vizlight.model import kernels
 from vizlight.scene import Light, Scene, View
 from vizlight.scene.presets import AnyScene, optional_scene
 from vizlight.shading.display import Bytes, on_colors
-from vizlight.shading.options import FeatureAngle, LightOptions
+from vizlight.shading.options import LightOptions
 from vizlight.vtk.arrays import GridPoints
 from vizlight.vtk.cells import has_marks
 from vizlight.vtk.corners import MANY_SHARP, SHARP

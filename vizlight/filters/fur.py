@@ -12,7 +12,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _pool
-from vizlight._types import Array, Indices, Slice, Vector, VectorLike
+from vizlight._types import Array, Exponent, FeatureAngle, Indices, Model, Slice, Vector, VectorLike
 from vizlight.filters import lighting
 from vizlight.geometry.lines import fur as geometry
 from vizlight.mesh import blocks, bundles, georeference, records
@@ -23,16 +23,7 @@ from vizlight.scene import Material, Scene
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import AnyScene, as_scene
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import (
-    Bundle,
-    Exponent,
-    FeatureAngle,
-    Model,
-    Options,
-    ShadingOptions,
-    check_sides,
-    checked_bundle,
-)
+from vizlight.shading.options import Bundle, Options, ShadingOptions, check_sides, checked_bundle
 from vizlight.vtk.arrays import vectors_of
 
 #: Default absorption, and length of fibres as a share of the diagonal of the mesh.

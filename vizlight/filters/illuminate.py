@@ -10,6 +10,7 @@ import pyvista as pv
 from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Exponent, Facing, FeatureAngle, Model, Precision
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.mesh import blocks, bundles, normals, refining
@@ -17,15 +18,7 @@ from vizlight.mesh.blocks import MeshT
 from vizlight.scene import Scene
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import AnyScene, as_scene
-from vizlight.shading.options import (
-    Bundle,
-    Exponent,
-    Facing,
-    FeatureAngle,
-    LightOptions,
-    Model,
-    Precision,
-)
+from vizlight.shading.options import Bundle, LightOptions
 from vizlight.vtk.arrays import is_of_cells, points_of
 from vizlight.vtk.normals import Sided, Vote
 from vizlight.vtk.parts import Part, uses_normals

@@ -11,7 +11,7 @@ import pyvista as pv
 from numpy.typing import ArrayLike
 
 from vizlight import _check, _progress
-from vizlight._types import Array, Bools, Indices, Keywords
+from vizlight._types import Array, Bools, Exponent, FeatureAngle, Indices, Keywords
 from vizlight.filters import lighting
 from vizlight.geometry.contours import banding, refinement, spacing
 from vizlight.geometry.contours import isoluminance as closed
@@ -30,7 +30,7 @@ from vizlight.shading import engine
 from vizlight.shading.display import exposed
 from vizlight.shading.engine import Shading
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import Exponent, FeatureAngle, LightOptions, Options, check_sides
+from vizlight.shading.options import LightOptions, Options, check_sides
 from vizlight.shading.results import Record, of_light, part_name, unlit
 from vizlight.vtk.arrays import array_of
 

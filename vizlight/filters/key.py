@@ -12,13 +12,12 @@ from vtkmodules.vtkCommonCore import vtkStringArray
 
 from vizlight import _check
 from vizlight._questions import QUESTIONS, Question
-from vizlight._types import Array
+from vizlight._types import Array, Exponent
 from vizlight.filters.tint import RGB, ColorMap, color_table
 from vizlight.scene import Scene, View
 from vizlight.scene.presets import AnyScene, preset_of, required_scene
 from vizlight.shading import engine
 from vizlight.shading.display import LEAST, Bytes, displayable, numerals, on_colors
-from vizlight.shading.options import Exponent
 
 #: Name of the field array with the words that stand beside a key.
 WORDS = "words"

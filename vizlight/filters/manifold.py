@@ -9,14 +9,13 @@ import pyvista as pv
 from numpy.typing import ArrayLike
 
 from vizlight import _check
-from vizlight._types import VectorLike
+from vizlight._types import Exponent, Facing, Model, Precision, VectorLike
 from vizlight.filters.project import LightWhen, ProjectOptions, project
 from vizlight.geometry.nspace.manifolds import Manifold
 from vizlight.mesh.blocks import polydata
 from vizlight.mesh.nspace import FRAME, POSITION
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import AnyScene
-from vizlight.shading.options import Exponent, Facing, Model, Precision
 
 
 @named

@@ -13,7 +13,7 @@ import pyvista as pv
 from numpy.typing import ArrayLike
 
 from vizlight import _check, _progress
-from vizlight._types import Array, Foreign
+from vizlight._types import Array, Exponent, Facing, Foreign, Model, Precision
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
 from vizlight.mesh import cf_grids, georeference, meaning, records
@@ -21,7 +21,7 @@ from vizlight.mesh.particles import Carrier, Rows
 from vizlight.mesh.series import TIME, Series
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import AnyScene, as_scene
-from vizlight.shading.options import Bundle, Exponent, Facing, LightOptions, Model, Precision
+from vizlight.shading.options import Bundle, LightOptions
 
 #: Kinds of lines in a flow that changes with time.
 Kind = Literal["pathlines", "streaklines"]

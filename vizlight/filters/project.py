@@ -12,7 +12,7 @@ import pyvista as pv
 from numpy.typing import ArrayLike
 
 from vizlight import _check, _progress
-from vizlight._types import Given, VectorLike
+from vizlight._types import Exponent, Facing, Given, Model, Precision, VectorLike
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.nspace import projection
 from vizlight.mesh import blocks, records
@@ -20,7 +20,7 @@ from vizlight.mesh.nspace import FRAME, POSITION, PROJECTED, Counter, Turning, c
 from vizlight.scene import Scene
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import AnyScene, optional_scene
-from vizlight.shading.options import Exponent, Facing, LightOptions, Model, Precision
+from vizlight.shading.options import LightOptions
 from vizlight.shading.results import Record
 
 LightWhen = Literal["before", "after"]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Exponent, Facing, FeatureAngle, Model, Precision
 from vizlight.filters import lighting
 from vizlight.filters.illuminate import light_parts, parts_of
 from vizlight.filters.sky import with_sky
@@ -15,15 +16,7 @@ from vizlight.mesh import blocks, records, refining
 from vizlight.mesh.blocks import MeshT
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import AnyScene, as_scene
-from vizlight.shading.options import (
-    Bundle,
-    Exponent,
-    Facing,
-    FeatureAngle,
-    LightOptions,
-    Model,
-    Precision,
-)
+from vizlight.shading.options import Bundle, LightOptions
 from vizlight.shading.results import plain
 from vizlight.vtk.parts import share_of
 

@@ -10,7 +10,7 @@ import pyvista as pv
 from numpy.typing import ArrayLike
 
 from vizlight import _check
-from vizlight._types import Array, Keywords, Raw
+from vizlight._types import Array, FeatureAngle, Keywords, Raw
 from vizlight.filters.relief_shadow import ReliefOptions, relief_shadow
 from vizlight.geometry.relief import sun as sky
 from vizlight.geometry.relief.height_field import Border
@@ -18,7 +18,6 @@ from vizlight.mesh import blocks, records
 from vizlight.mesh.blocks import MeshT
 from vizlight.scene import Light, Material, Scene
 from vizlight.scene.keywords import named
-from vizlight.shading.options import FeatureAngle
 from vizlight.shading.results import VALID, plain
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check, _progress
-from vizlight._types import Array, Keywords, Raw
+from vizlight._types import Array, FeatureAngle, Keywords, Raw
 from vizlight.filters import lighting
 from vizlight.filters.sky import with_sky
 from vizlight.geometry.relief import sun as sky
@@ -26,7 +26,7 @@ from vizlight.scene import Light, Scene
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import AnyScene, as_scene
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import FeatureAngle, ShadingOptions
+from vizlight.shading.options import ShadingOptions
 from vizlight.shading.results import (
     DEFAULT_NAME,
     PARTS,

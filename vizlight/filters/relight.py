@@ -11,7 +11,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight._types import Given, Keywords
+from vizlight._types import Facing, Given, Keywords
 from vizlight.filters import lighting
 from vizlight.filters.relief_shadow import ReliefOptions, Shadows
 from vizlight.filters.sky import with_sky
@@ -22,7 +22,7 @@ from vizlight.mesh.nspace import PROJECTED
 from vizlight.scene import Scene, View
 from vizlight.shading.engine import Shading
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import Bundle, Facing, LightOptions, ShadingOptions
+from vizlight.shading.options import Bundle, LightOptions, ShadingOptions
 from vizlight.shading.results import DEFAULT_NAME, part_name
 from vizlight.vtk.normals import Sided
 

@@ -10,19 +10,12 @@ import pyvista as pv
 from numpy.typing import ArrayLike
 
 from vizlight import _check
+from vizlight._types import Exponent, Facing, FeatureAngle, Model, Precision
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import StreamlineOptions, light_lines
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import AnyScene
-from vizlight.shading.options import (
-    Bundle,
-    Exponent,
-    Facing,
-    FeatureAngle,
-    LightOptions,
-    Model,
-    Precision,
-)
+from vizlight.shading.options import Bundle, LightOptions
 from vizlight.vtk.arrays import is_of_cells, tangents_of, vectors_of
 
 

@@ -11,7 +11,7 @@ import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPointSet, vtkPolyData
 
 from vizlight import _check, _progress
-from vizlight._types import Given, Raw
+from vizlight._types import FeatureAngle, Given, Raw
 from vizlight._version import __version__
 from vizlight.geometry.relief.sky import LARGEST, LEAST
 from vizlight.mesh import blocks, normals, records, subdivision
@@ -19,7 +19,7 @@ from vizlight.mesh.blocks import MeshT
 from vizlight.mesh.sky import MANY, VOXELS, Sky, skies
 from vizlight.model import kernels
 from vizlight.scene.keywords import named
-from vizlight.shading.options import FeatureAngle, Options, check_sides
+from vizlight.shading.options import Options, check_sides
 from vizlight.shading.results import VALID, Record, digest, plain
 from vizlight.vtk.cells import places, point_data
 from vizlight.vtk.corners import SHARP

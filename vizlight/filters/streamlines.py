@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from vizlight import _check, _progress
 from vizlight._questions import QUESTIONS
-from vizlight._types import Array, Indices
+from vizlight._types import Array, Exponent, Facing, FeatureAngle, Indices, Model, Precision
 from vizlight.filters.illuminate import light_mesh
 from vizlight.geometry.lines.tracing import Tracing
 from vizlight.mesh import blocks, georeference, meaning, records, strokes, tracers
@@ -25,15 +25,7 @@ from vizlight.model import kernels, line_fields
 from vizlight.scene import Scene
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import AnyScene, as_scene, preset_of
-from vizlight.shading.options import (
-    Bundle,
-    Exponent,
-    Facing,
-    FeatureAngle,
-    LightOptions,
-    Model,
-    Precision,
-)
+from vizlight.shading.options import Bundle, LightOptions
 from vizlight.vtk import polylines
 from vizlight.vtk.arrays import array_of, vectors_of
 from vizlight.vtk.cells import check_whole, has_faces

@@ -12,14 +12,14 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight._types import Array, Bools, VectorLike
+from vizlight._types import Array, Bools, FeatureAngle, VectorLike
 from vizlight.geometry.relief import height_field, shadowing
 from vizlight.geometry.relief.height_field import Border
 from vizlight.mesh import closed_meshes, georeference, normals
 from vizlight.mesh.height_grids import Grid, Raster, heights_of
 from vizlight.model import kernels
 from vizlight.scene import Light, Scene
-from vizlight.shading.options import FeatureAngle, Options, check_sides
+from vizlight.shading.options import Options, check_sides
 from vizlight.verify import rays
 
 #: Default depth of a closed surface, as a share of the diagonal of the mesh.

@@ -960,7 +960,7 @@ class _Reader:
         return earth[..., 0], earth[..., 1]
 
     def _projection(self, kind: str = "rotated") -> str:
-        """Return the text of the projection of a grid whose axes are of a kind, empty for none."""
+        """Return the text of the projection of a grid by the kind of its axes, empty for none."""
         tables = [self.file.attrs, *(one.attrs for one in self.file.variables.values())]
         for attributes in tables:
             is_rotated = "grid_north_pole_latitude" in attributes
@@ -1342,7 +1342,7 @@ def _within(rows: Raw, attributes: Mapping[str, Foreign]) -> Raw:
 
 
 def _with_numbers(data: Foreign) -> Foreign:
-    """Return a dataset whose times are numbers, as they are in files, of types that VTK has.
+    """Return a dataset with times in numbers, as they are in files, of types that VTK has.
 
     Places that say that they are fake, for programs that know no others, are left out.
     """

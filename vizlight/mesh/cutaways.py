@@ -75,7 +75,7 @@ def cut_open(
     rows = np.asarray(records.scalars_of(volume, "name", name))
     if min(volume.dimensions) < 2:
         expected = "an image of two points at least along each axis"
-        raise ValueError(_check.message("volume", expected, f"{volume.dimensions} points"))
+        raise _check.value_error("volume", expected, f"{volume.dimensions} points")
     direction = np.array(_check.vector("toward", toward, direction=True, n=3))
     steps = -(-np.array(volume.dimensions) // FINE)
     values = rows.reshape(volume.dimensions, order="F")[tuple(slice(None, None, k) for k in steps)]
@@ -156,8 +156,7 @@ def _air(is_dark: Bools) -> Bools:
         )
     # Narrow folds of the skin, as around the eyes, are air too, as deep as the gaps are wide.
     reach = 2 * (GAP + 1) * max(steps)
-    air: Bools = scipy.ndimage.binary_dilation(around, iterations=reach, mask=is_dark)
-    return air
+    return scipy.ndimage.binary_dilation(around, iterations=reach, mask=is_dark)
 
 
 def _largest(mask: Bools) -> Bools:

@@ -139,7 +139,7 @@ def _turned(rows: Array, axes: Array) -> Array:
 
 
 def divided(lines: pv.PolyData) -> pv.PolyData:
-    """Return lines whose sides are at most a degree long.
+    """Return lines with sides that are at most a degree long.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def divided(lines: pv.PolyData) -> pv.PolyData:
 
 
 def closed(mesh: pv.DataSet) -> pv.DataSet:
-    """Return a map whose last column is its first one, 360 degrees on, if it ends before that.
+    """Return a map with its first column as the last one, 360 degrees on, if it ends before that.
 
     Parameters
     ----------

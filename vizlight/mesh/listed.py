@@ -323,8 +323,7 @@ def tracks(file: Foreign, dim: str) -> Indices | None:
                 return np.repeat(np.arange(len(counts)), counts)
         has_id = variable.attrs.get("cf_role") == "trajectory_id"
         if variable.dims == (dim,) and (has_id or "instance_dimension" in variable.attrs):
-            numbers: Indices = np.unique(variable.values, return_inverse=True)[1]
-            return numbers
+            return np.unique(variable.values, return_inverse=True)[1]
     return np.zeros(size, np.intp)
 
 

@@ -75,5 +75,4 @@ def _path_lengths(places: Array, parents: Sequence[int]) -> Array:
     steps = np.maximum(np.linalg.norm(places[rows] - places[ups], axis=1), np.finfo(float).tiny)
     tree = scipy.sparse.csr_matrix((steps, (ups, rows)), (len(places),) * 2)
     ways = scipy.sparse.csgraph.dijkstra(tree, indices=roots, min_only=True)
-    lengths: Array = np.where(np.isfinite(ways), ways, np.nan)
-    return lengths
+    return np.where(np.isfinite(ways), ways, np.nan)

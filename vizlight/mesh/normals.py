@@ -13,13 +13,13 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight._types import Array, Foreign, Indices, Raw
+from vizlight._types import Array, FeatureAngle, Foreign, Indices, Raw
 from vizlight.geometry.lines.simplices import Simplices
 from vizlight.mesh import blocks, records
 from vizlight.model import kernels
 from vizlight.scene import Scene, View
 from vizlight.shading.inputs import ArraySource
-from vizlight.shading.options import FeatureAngle, LightOptions
+from vizlight.shading.options import LightOptions
 from vizlight.vtk import normals as vtk_normals
 from vizlight.vtk.batches import SMALL, batches
 from vizlight.vtk.cells import (

@@ -44,12 +44,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from vizlight._types import Foreign, Given, Keywords, Raw
+    from vizlight._types import Exponent, Foreign, Given, Keywords, Model, Raw
     from vizlight.filters.tint import ColorMap
     from vizlight.observers.samples import SeenMesh
     from vizlight.scene.conversion import AnyView
     from vizlight.scene.presets import AnyScene
-    from vizlight.shading.options import Exponent, Model
 
 __all__ = ["Legibility", "legibility"]
 

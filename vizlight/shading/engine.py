@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from vizlight import _check, _pool
-from vizlight._types import Array, Keywords, Slice
+from vizlight._types import Array, Exponent, Keywords, Model, Precision, Slice
 from vizlight.model import kernels
 from vizlight.scene import Scene, View
 from vizlight.scene.keywords import named
 from vizlight.shading.arrays import Shading, columns, shade_block
 from vizlight.shading.inputs import ArraySource, Layout, ShadingInputs, array_source
-from vizlight.shading.options import Exponent, Model, Precision, ShadingOptions
+from vizlight.shading.options import ShadingOptions
 from vizlight.shading.plan import Plan, decide
 
 Progress: TypeAlias = Callable[[int, int], None]

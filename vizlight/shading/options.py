@@ -5,26 +5,21 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, ClassVar, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from vizlight import _check
-from vizlight._types import Given, Keywords
+from vizlight._types import Exponent, Facing, FeatureAngle, Given, Keywords, Model, Precision
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-Model = Literal["phong", "blinn", "cylinder"]
-Precision = Literal["float32", "float64"]
 #: Limits of a given exponent of the diffuse term: beyond them a picture has one brightness.
 LEAST_EXPONENT, LARGEST_EXPONENT = 1e-6, 1e6
 #: Largest number of voxels along a side of a bundle's grid.
 FINEST_GRID = 1024
-Exponent: TypeAlias = float | Literal["compensated"]
-FeatureAngle: TypeAlias = float | Literal["auto"] | None
-Facing = Literal["auto", "eye", "outward", "as given"]
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from vizlight import _check
-from vizlight._types import FloatType, Vector
+from vizlight._types import FloatType, Model, Vector
 from vizlight.model import brightness, kernels
 from vizlight.model.manifolds import Highlight
 from vizlight.scene import Light, Scene, View
 from vizlight.scene.light import NO_ATTENUATION
 from vizlight.shading.inputs import Layout
-from vizlight.shading.options import Model, ShadingOptions
+from vizlight.shading.options import ShadingOptions
 
 #: Bytes of a block's tangents. About ten times as much memory is in use at once: little enough for
 #: the last cache, enough that threads seldom wait for the interpreter.

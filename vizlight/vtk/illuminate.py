@@ -13,13 +13,13 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from vizlight import _check
-from vizlight._types import Foreign, Keywords, Raw
+from vizlight._types import Exponent, Facing, Foreign, Keywords, Model, Precision, Raw
 from vizlight.scene import Scene
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import as_scene
 from vizlight.shading import engine
 from vizlight.shading.inputs import ShadingInputs
-from vizlight.shading.options import Exponent, Facing, LightOptions, Model, Precision
+from vizlight.shading.options import LightOptions
 from vizlight.shading.results import arrays_of, digest, of_light, record_key, unlit
 from vizlight.vtk.cells import GHOSTS, as_vtk, check_whole
 from vizlight.vtk.parts import Part, part_of, uses_normals

@@ -14,11 +14,10 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
 from vizlight import _check
-from vizlight._types import Array, Bools, Dataset, Foreign, Indices, Raw, Rows, Slice
+from vizlight._types import Array, Bools, Dataset, Facing, Foreign, Indices, Raw, Rows, Slice
 from vizlight.model import kernels
 from vizlight.scene import View
 from vizlight.shading.inputs import ArraySource
-from vizlight.shading.options import Facing
 from vizlight.shading.results import digest
 from vizlight.vtk import cells as vtk_cells
 from vizlight.vtk import corners as vtk_corners
