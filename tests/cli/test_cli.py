@@ -42,6 +42,15 @@ def test_a_file_in_a_folder_needs_no_suffix(tmp_path, capfd):
     assert "no reader takes '' files" in capfd.readouterr().err
 
 
+@pytest.mark.parametrize(("count", "lit"), [(3, False), (40, True)])
+def test_clouds_of_points_are_drawn_and_many_are_lit(tmp_path, capfd, count, lit):
+    path, out = tmp_path / "cloud.xyz", tmp_path / "cloud.vtp"
+    np.savetxt(path, np.random.default_rng(0).normal(size=(count, 3)))
+    assert cli.main(["light", str(path), "-o", str(out)]) == 0
+    assert ("points lit in" in capfd.readouterr().out) == lit
+    assert ("luminance" in pv.read(out).point_data) == lit
+
+
 def test_names_with_control_characters_are_written_by_their_numbers(tmp_path, capfd):
     """They would move the cursor of a terminal, or turn the direction of writing."""
     name = "\x1b[31m\u202egnp\x7f\u200b"

@@ -175,6 +175,8 @@ class Command:
         for warning in caught:
             add_note(warning.message)
         name = _name(look)
+        if not any(name in block.array_names for block in all_blocks(lit)):
+            return  # points without normals
         record = vizlight.provenance(lit, name)
         terms = " + ".join(record.get("terms", [name]))
         points = sum(block.n_points for block in all_blocks(lit))
