@@ -88,6 +88,13 @@ def test_a_slab_is_seen_across(axis, toward):
     assert np.abs(eye_of(thick, Contents(thick)).toward).max() < 0.99
 
 
+def test_a_long_thing_lies_across_the_picture():
+    # A thick end that an eye in front of it would see most of.
+    bar = pv.Cylinder(direction=(1, 0, 0), radius=0.4, height=5).triangulate()
+    head = pv.Cube(center=(2.5, 0, 0), x_length=0.3, y_length=2, z_length=2).triangulate()
+    assert abs(eye(pv.merge([bar, head]).extract_surface(algorithm=None)).toward[0]) < 0.5
+
+
 def test_a_surface_that_its_box_cuts_is_seen_near_a_diagonal():
     grid = pv.ImageData(dimensions=(30,) * 3, spacing=(0.25,) * 3)
     x, y, z = np.asarray(grid.points).T
@@ -97,10 +104,12 @@ def test_a_surface_that_its_box_cuts_is_seen_near_a_diagonal():
     assert min(abs(toward[0]), abs(toward[1])) > 0.5
 
 
-@pytest.mark.parametrize("turn", [0, 90])
-def test_a_thing_that_stands_along_y_has_y_up(turn):
-    foot = pv.Cone(direction=(0, 1, 0), radius=0.6, resolution=24).triangulate()
-    thing = foot.subdivide(3).rotate_x(turn)
+@pytest.mark.parametrize(("turn", "slope"), [(0, 0.0), (90, 0.0), (0, 0.03)])
+def test_a_thing_that_stands_along_y_has_y_up(turn, slope):
+    foot = pv.Cone(direction=(0, 1, 0), radius=0.6, resolution=24).triangulate().subdivide(3)
+    # The foot of a bust is uneven.
+    foot.points[:, 1] += slope * foot.points[:, 0]
+    thing = foot.rotate_x(turn)
     viewpoint = eye(thing)
     assert viewpoint.up == ((0, 1, 0) if turn == 0 else (0, 0, 1))
     # It is seen from above its foot.

@@ -24,6 +24,13 @@ def test_the_level_is_where_the_values_rise_most(cast):
     assert contrast > 2
 
 
+def test_the_lowest_level_of_those_that_are_nearly_as_steep():
+    best, contrast = levels.best_level(grid(), "T")
+    lowest, other = levels.best_level(grid(), "T", share=0.7)
+    assert lowest < best - 3
+    assert 0.7 * contrast <= other < contrast
+
+
 def test_a_ramp_has_no_level():
     _, contrast = levels.best_level(grid(), "ramp")
     assert contrast == pytest.approx(1, abs=0.05)

@@ -167,7 +167,10 @@ def test_both_signs_of_an_orbital_are_shown(monkeypatch):
     np.testing.assert_allclose(np.unique(look.mesh["psi"]), [-level, level], rtol=1e-6)
     # The molecule of a cube file is seen through lobes whose faces point outward.
     grid.field_data["atom_numbers"], grid.field_data["atom_places"] = [8, 1], [[0, 0, 0], [1, 0, 0]]
-    lobes, atoms, *_ = vizlight.look(grid).drawing.layers
+    with_atoms = vizlight.look(grid)
+    lobes, atoms, *_ = with_atoms.drawing.layers
+    end, squares = with_atoms.drawing.keys[0]["levels"][2], np.asarray(grid["psi"]) ** 2
+    assert squares[squares > end**2].sum() == pytest.approx(0.85 * squares.sum(), rel=0.05)
     assert (lobes.keywords["opacity"], lobes.keywords["culling"]) == (0.5, "back")
     normals, points = lobes.mesh.run()["Normals"], np.asarray(lobes.mesh.run().points)
     sides = np.where(points[:, :1] > 0, 1, -1) * [4, 0, 0]
