@@ -226,4 +226,4 @@ def test_trajectories_are_lines(form):
     # Longitudes begin behind the widest gap, so that the date line is inside.
     assert sorted(lines) == ([[0, 1, 2], [3, 4, 5]] if form != "single" else [[0, 1, 2, 3, 4, 5]])
     del file.attrs["featureType"]
-    assert not vizlight.look(file).mesh.n_lines
+    assert not vizlight.look(file).drawing.layers[0].mesh.run().n_lines

@@ -40,9 +40,9 @@ DIRECTION = "direction"
 #: Least width of lines in widths of the thinnest, their largest in pixels, and the share of a
 #: picture that they may fill.
 THINNEST, WIDEST, COVERED = 1.7, 6.0, 0.08
-#: Side in pixels of the squares in which lines are crowded, and the share of them that they may
-#: fill.
-SQUARE, CROWDED = 24.0, 0.5
+#: Side of the squares in which lines are crowded, in widths of the thinnest, and the share of them
+#: that they may fill.
+SQUARE, CROWDED = 8.0, 0.5
 #: Least and largest size of points in pixels, and the share of a picture that they may fill.
 POINT_SIZES, FILLED = (3.0, 14.0), 0.15
 #: Size of the points of a map in distances of neighbours, and most points whose neighbours are
@@ -90,7 +90,7 @@ def lines(case: Case) -> Drawing:
         lit = case.lit(mesh, scene, **light)
         shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
         # Outlines tell lines apart by themselves; light would make those toward the eye as dark.
-        even = case.lit(mesh, even_light(camera)) if "halo" in pen else lit
+        even = case.lit(mesh, even_light(camera)) if pen.get("halo") else lit
         layer = Layer(_by_direction(even), shown | pen)
         table = Step("", "vizlight.maps.directions", meaning.ways(mesh.run()))
         key: Keywords = {"question": "value", "cmap": table}
@@ -206,11 +206,12 @@ def _pen(case: Case, camera: Step) -> Keywords:
     columns, rows = case.wishes.size
     length = float(np.nansum(steps)) / (mesh.length or 1.0) * np.hypot(columns, rows)
     widest = COVERED * columns * rows / max(length, 1e-9)
-    pixel = pixel_of(case, camera)
-    crowd = _crowd(places / pixel, steps / pixel, camera)
-    widest = min(widest, CROWDED * SQUARE / max(crowd, 1e-9))
     thinnest = THINNEST * case.width
-    if case.contents.flat_axis is not None:
+    side = SQUARE * thinnest
+    square = side * pixel_of(case, camera)
+    crowd = _crowd(places / square, steps / square, camera)
+    widest = min(widest, CROWDED * side / max(crowd, 1e-9))
+    if case.contents.flat_axis is not None and case.wishes.frame is None:
         # None is in front.
         width = np.clip(widest, case.width / 2, WIDEST)
         return {"line_width": round(float(width), 1), "halo": False}
@@ -219,9 +220,9 @@ def _pen(case: Case, camera: Step) -> Keywords:
 
 
 def _crowd(places: Array, lengths: Array, camera: Step) -> float:
-    """Return the length of lines in the usual square of the picture, in sides of the square.
+    """Return the length of lines in the usual square of the picture.
 
-    Half of the length is in squares that hold more. Places and lengths of segments are in pixels.
+    Half of the length is in squares that hold more. All lengths are in sides of a square.
     """
     eye = camera.run()
     right = np.cross(eye.direction, eye.up)
@@ -230,13 +231,13 @@ def _crowd(places: Array, lengths: Array, camera: Step) -> float:
     if not len(kept):
         return 0.0
     # Long segments are in several squares.
-    counts = np.ceil(lengths[kept] / SQUARE).astype(np.intp)
+    counts = np.ceil(lengths[kept]).astype(np.intp)
     number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     share = (number + 0.5) / np.repeat(counts, counts)
     first = np.repeat(kept, counts)
     middles = flat[first] + share[:, np.newaxis] * (flat[first + 1] - flat[first])
-    _, square = np.unique(np.floor(middles / SQUARE), axis=0, return_inverse=True)
-    sums = np.bincount(square.reshape(-1), np.repeat(lengths[kept] / counts, counts)) / SQUARE
+    _, square = np.unique(np.floor(middles), axis=0, return_inverse=True)
+    sums = np.bincount(square.reshape(-1), np.repeat(lengths[kept] / counts, counts))
     order = np.argsort(sums)
     total = np.cumsum(sums[order])
     return float(sums[order[np.searchsorted(total, total[-1] / 2)]])
