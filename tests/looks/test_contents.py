@@ -235,3 +235,13 @@ def test_arrays_of_which_nothing_can_be_shown_are_named():
     empty = {"gone": lambda n: np.full(n, np.nan), "same": lambda n: np.full(n, 3), "ids": rising}
     assert of(**empty).words_on_none() == "gone has no number, same is 3 everywhere"
     assert of(**empty, p=rising).words_on_none() == ""
+
+
+@pytest.mark.parametrize(("spread", "shown"), [(20, False), (110, True)])
+def test_much_the_same_greys_of_a_surface_in_space_are_no_datum(spread, shown):
+    ball = pv.Sphere()
+    greys = np.linspace(128 - spread, 128 + spread, ball.n_points).astype(np.uint8)
+    ball["RGB"] = np.repeat(greys[:, np.newaxis], 3, axis=1)
+    assert [each.name for each in Contents(ball).arrays] == ["RGB"] * shown
+    ball["RGB"][0] = [9, 8, 7]
+    assert Contents(ball).arrays[0].name == "RGB"

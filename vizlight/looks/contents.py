@@ -54,6 +54,8 @@ _TABLE_WORDS = {
 _TABLES = {"TANGENT", "arc_length", "gmsh:bounding_entities", "gmsh:dim_tags"}
 #: Numbers that stand for white in images of 8 and 16 bits.
 WHITE = (2**8 - 1, 2**16 - 1)
+#: Deviation of greys, as a share of white, below which those of a surface in space are no picture.
+SHADES = 0.12
 #: Words in the names of kinds, whose numbers may be many.
 _KIND_WORDS = {
     "block", "body", "chain", "class", "classes", "domain", "group", "groups", "label", "labels",
@@ -272,6 +274,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
             said = _words_of(mesh, name)
             if array is not None and array.role == "values" and meaning.flags(mesh, name):
                 array = replace(array, role="kinds")
+            if array is not None and array.role == "colors" and _is_shade(mesh, values):
+                continue
             if meaning.is_planar(values) and (name == texture or mesh.bounds_size[2]):
                 # Two components are vectors in a plane alone.
                 continue
@@ -396,6 +400,15 @@ def _is_table(name: str) -> bool:
     """Return whether a name is that of a table of a mesh, such as ``node_x``, ``cellsOnCell``."""
     words = [word for word in _words(name) if not word.isdigit()]
     return len(words) > 1 and _TABLE_WORDS.issuperset(words)
+
+
+def _is_shade(mesh: pv.DataSet, colors: AnyArray) -> bool:
+    """Return whether colours of a surface in space are much the same grey: light of a program."""
+    rgb = colors[:, :3] / (1.0 if colors.dtype.kind == "f" else WHITE[0])
+    in_space = (
+        isinstance(mesh, pv.PolyData) and mesh.GetNumberOfPolys() > 0 and mesh.bounds_size[2] > 0
+    )
+    return in_space and bool(np.all(rgb == rgb[:, :1])) and float(rgb[:, 0].std()) < SHADES
 
 
 def _are_whole(values: AnyArray) -> bool:
