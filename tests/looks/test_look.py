@@ -614,3 +614,11 @@ def test_titles_in_capitals_are_written_small_and_monthly_steps_are_months(days,
     arrays = {"w": {"long_name": long_name, "units": "M/S"}}
     meaning.attach(grid, meaning.Meaning(arrays=arrays, time="days since 2000-01-01"))
     assert titled(series.marked(grid, days, 1), "w") == title
+
+
+def test_a_step_of_a_climatology_has_the_name_of_its_month():
+    grid = pv.ImageData(dimensions=(3, 3, 1))
+    meaning.attach(grid, meaning.Meaning(time="hour since 0000-01-01 00:00:00"))
+    hours = 366 + 730.485 * np.arange(12)
+    titles = [titled(series.marked(grid, hours, i), "SST") for i in (0, 1, 11)]
+    assert titles == ["SST, January", "SST, February", "SST, December"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import calendar
 import dataclasses
 import re
 from dataclasses import dataclass
@@ -75,7 +76,9 @@ ON_BOX, CUT = 1e-3, 0.95
 #: Methods of CF over the time of a step.
 OVER_TIME = re.compile(r"\btime: (mean|maximum|minimum|median|sum|variance)\b(?! within)")
 #: Names of velocities, in lower case.
-VELOCITY = re.compile(r"u|v|vel|u,v(,w)?|uvw?|vectors?|.*(veloc|wi?nd|flow|current).*")
+VELOCITY = re.compile(r"u|v|vel|u,v(,w)?|uvw?|vectors?|.*(veloc|vitesse|wi?nd|flow|current).*")
+#: First day of times of no year, and days of a year.
+NO_YEAR, YEAR = re.compile("0{1,4}[01]?-0?1-0?1"), 365.25
 #: Width over height of a map from which a key takes less room below it, in that of the picture.
 WIDE = 1.08
 #: Questions whose pictures of maps have north up, whatever their shape is.
@@ -660,7 +663,7 @@ def _dated(mesh: pv.DataSet, methods: str) -> str:
     times = [float(np.ravel(mesh.field_data[series.TIME])[0]), *said.span]
     date, *ends = (dates.date(time, said.time).removesuffix(" 00:00") for time in times)
     if _are_monthly(series.of(mesh), said.time):
-        date = date[: len("2000-01")]
+        date = date[: len("2000-01")] or _month(times[0], said.time)
     if not date and len(series.of(mesh)) > 1:
         unit = said.time.partition(", ")[0].partition(" since ")[0]
         # One month is a name, many are a time.
@@ -673,6 +676,15 @@ def _dated(mesh: pv.DataSet, methods: str) -> str:
     return (
         f"{method[1]} of {ends[0]} to {ends[1]}" if all(ends) and ends else f"{method[1]} at {date}"
     )
+
+
+def _month(time: float, unit: str) -> str:
+    """Return the name of the month of a climatology, which is that of no year; else empty."""
+    name, _, start = unit.partition(" since ")
+    size = dates.seconds(name)
+    if size is None or not NO_YEAR.match(start):
+        return ""
+    return calendar.month_name[int(time * size / (YEAR * 86400) * 12) % 12 + 1]
 
 
 def _are_monthly(times: Sequence[float], unit: str) -> bool:
