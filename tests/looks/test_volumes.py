@@ -229,3 +229,17 @@ def test_borders_of_an_isosurface_are_as_light_as_its_box_and_it_has_no_creases(
     colors = {layer.mesh.name: layer.keywords["color"] for layer in look.drawing.layers[1:2]}
     assert colors == {"borders": "gray"}
     assert "creases" not in [layer.mesh.name for layer in look.drawing.layers]
+
+
+def test_specks_beside_the_isosurface_of_a_scan_are_left_out(tmp_path):
+    grid = volume(count=64)
+    values = np.asarray(grid["T"]).reshape(grid.dimensions, order="F")
+    values[3:5, 3:5, 3:5] = values.max()
+    values[55:57, 3:5, 3:5] = values.max()
+    look = vizlight.look(grid)
+    assert "2 small pieces are left out" in look.drawing.notes
+    assert look.mesh.bounds[0] == pytest.approx(0.3, abs=0.05)
+    assert '.connectivity("specified", [0])' in look.script("a.png")
+    # Who asks for a level gets all of it.
+    whole = vizlight.look(grid, "shape", contour="T", level=0.0)
+    assert whole.mesh.bounds[0] < 0.1

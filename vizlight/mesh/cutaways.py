@@ -1,4 +1,4 @@
-"""Scans cut open: the skin of what stands in air, and the faces of the corner taken out of it."""
+"""Scans cut open: the skin of a body in air, and the faces of the corner taken out of it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def cut_open(
 ) -> pv.MultiBlock:
     """Return a scan of a body in air with the corner toward an eye taken out of it.
 
-    Air is what is dark and connects to the sides of the volume: cavities stay, and narrow gaps. The
+    Air is dark and connects to the sides of the volume: cavities stay, and narrow gaps. The
     skin is where values rise to 0.3 times the median of those of the body, smoothed by 1.5 voxels.
 
     Parameters

@@ -57,8 +57,11 @@ LOBES = ["#4169cf", "#d63a3a"]
 #: Level of maps of densities above their mean, in their standard deviations, where nothing is
 #: steeper: crystallographers take 1 to 3.
 SIGMAS = 2.0
-#: Note on a scan that is smoothed.
-SMOOTHED = "the values are smoothed by one voxel"
+#: Deviation of the filter that smooths scans, in voxels, and the note on it.
+SMOOTH = 0.7
+SMOOTHED = f"the values are smoothed by {SMOOTH:g} voxels"
+#: Share of the points of the largest piece of a scan below which others are debris.
+DEBRIS = 0.003
 #: Share of its range through which a second array runs on an isosurface that shows it.
 LEAST_SPREAD = 0.02
 #: Drawing of an isosurface around a molecule, whose far side would hide it too, and normals that
@@ -106,6 +109,8 @@ def isosurface(case: Case) -> Drawing:
         mesh = Step("outward", ".compute_normals", mesh, **OUTWARD)
     if not level.is_sure and _is_crumbs(mesh.run()):
         return _cut_open(case) or slices(case, "; isosurfaces are crumbs")
+    if not level.is_sure and _is_scan(case, array):
+        mesh = _without_debris(mesh, level.notes)
     surface, box = _framed(whole, mesh, boxed=level.boxed)
     if has_molecule and box is None and case.wishes.frame is None:
         # Atoms may stand out of the isosurface.
@@ -147,7 +152,7 @@ def _level(case: Case, array: Named) -> _Level | str:
     volume = case.data
     if is_scan:
         # The edge of a mask would be a staircase of voxels.
-        volume = Step("smooth", ".gaussian_smooth", volume, std_dev=1.0, scalars=array.name)
+        volume = Step("smooth", ".gaussian_smooth", volume, std_dev=SMOOTH, scalars=array.name)
     if is_auto and (size := _size_of_both_signs(values, volume, array)) is not None:
         if is_scan:
             volume = Step("closed", ".pad_image", volume, pad_value=0.0, scalars=array.name)
@@ -252,6 +257,22 @@ def _closed(image: Step, name: str, level: float) -> Step:
     return Step("closed", ".pad_image", image, pad_value=float(np.nanmin(values)), scalars=name)
 
 
+def _without_debris(mesh: Step, notes: list[str]) -> Step:
+    """Return the step that takes the large pieces of an isosurface, and note how many others are.
+
+    Such are specks of noise, and ends of what is too thin for the level.
+    """
+    if not mesh.run().n_cells:
+        return mesh
+    sizes = np.bincount(piece_numbers(mesh.run()))
+    kept = int(np.sum(sizes >= DEBRIS * sizes.max()))
+    if kept == len(sizes):
+        return mesh
+    notes.append(f"{len(sizes) - kept} small pieces are left out")
+    # VTK numbers pieces by their sizes.
+    return Step("pieces", ".connectivity", mesh, "specified", list(range(kept)))
+
+
 def _is_crumbs(mesh: pv.DataSet) -> bool:
     """Return whether an isosurface is in many pieces of which none is large."""
     if not mesh.n_cells:
@@ -304,7 +325,7 @@ def _is_gray(case: Case, array: Named) -> bool:
 
 
 def _is_compact(case: Case, array: Named) -> bool:
-    """Return whether what is above the lowest value of an image fills much of its box."""
+    """Return whether the values above the lowest one of an image fill much of its box."""
     mesh = case.data.run()
     steps = tuple(slice(None, None, max(1, size // STEPS)) for size in mesh.dimensions)
     values = np.asarray(mesh[array.name]).reshape(mesh.dimensions, order="F")[steps]
