@@ -236,8 +236,9 @@ def _crowd(places: Array, lengths: Array, camera: Step) -> float:
     share = (number + 0.5) / np.repeat(counts, counts)
     first = np.repeat(kept, counts)
     middles = flat[first] + share[:, np.newaxis] * (flat[first + 1] - flat[first])
-    _, square = np.unique(np.floor(middles), axis=0, return_inverse=True)
-    sums = np.bincount(square.reshape(-1), np.repeat(lengths[kept] / counts, counts))
+    column, row = np.floor(middles - middles.min(axis=0)).astype(np.intp).T
+    _, square = np.unique(column * (row.max() + 1) + row, return_inverse=True)
+    sums = np.bincount(square, np.repeat(lengths[kept] / counts, counts))
     order = np.argsort(sums)
     total = np.cumsum(sums[order])
     return float(sums[order[np.searchsorted(total, total[-1] / 2)]])
