@@ -304,5 +304,5 @@ def test_streamlines_have_the_colours_of_the_temperature_that_they_carry():
     assert look.summary.startswith("streamlines of wind in the colours of Temp")
     assert look.drawing.layers[0].keywords["scalars"] == "Temp"
     assert look.key[0]["title"] == "temperature; arrows point downstream"
-    asked = vizlight.look(volume, array="wind").drawing
-    assert asked.layers[0].keywords["scalars"] == "speed"
+    speed_drawing = vizlight.look(volume, array="wind").drawing
+    assert speed_drawing.layers[0].keywords["scalars"] == "speed"

@@ -459,8 +459,8 @@ def test_tangents_of_the_cells_of_lines_and_points_are_those_of_the_whole(name, 
 
 @pytest.mark.parametrize("kind", [k + n for k in ("Quadratic", "BiQuadratic") for n in FACES])
 def test_curved_faces_are_near_what_they_are_in_the_whole(kind, monkeypatch):
-    one = getattr(pv.examples.cells, kind)()
-    cells = [one.translate((i, j, 0.2 * i * j)) for i in range(3) for j in range(3)]
+    cell = getattr(pv.examples.cells, kind)()
+    cells = [cell.translate((i, j, 0.2 * i * j)) for i in range(3) for j in range(3)]
     mesh = with_vectors(pv.merge(cells, merge_points=True).cast_to_unstructured_grid())
     mesh.points[:, 2] += 0.2 * np.sin(5 * mesh.points[:, 0])
     np.testing.assert_array_equal(DrawnTriangles.of(mesh)[:], simplices(mesh))

@@ -456,9 +456,9 @@ def test_a_texture_tells_the_course_of_vectors_that_it_runs_along(vectors, middl
 
 
 def test_faint_wide_rings_are_read_in_the_channel_of_coarse_marks():
-    found = read_texture(lambda x, y: 0.03 * np.cos(60 * np.hypot(x, y))).direction
+    figures = read_texture(lambda x, y: 0.03 * np.cos(60 * np.hypot(x, y))).direction
     # In the fine channel alone it is half of that.
-    assert found.bits > 0.5
+    assert figures.bits > 0.5
 
 
 @pytest.mark.parametrize("waves", [60, 0])

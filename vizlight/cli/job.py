@@ -138,8 +138,6 @@ class Command:
             if last.path == "files.write_mesh":
                 mesh, path = last.arguments
                 assert isinstance(mesh, Step)
-                if not _is_lit(look):  # few points, of which this says that they have no normals
-                    vizlight.illuminate(lit.run(), look.drawing.scene.run())
                 files.check_format(mesh.run(), str(path))
         if self.read:
             say(str(look.figures()))
@@ -177,8 +175,6 @@ class Command:
         for warning in caught:
             add_note(warning.message)
         name = _name(look)
-        if not _is_lit(look):
-            return
         record = vizlight.provenance(lit, name)
         terms = " + ".join(record.get("terms", [name]))
         points = sum(block.n_points for block in all_blocks(lit))
@@ -190,13 +186,6 @@ class Command:
 def _name(look: Look) -> str:
     """Return the name of the light of a look."""
     return str(look.drawing.lit.keywords.get("name", look.drawing.name))
-
-
-def _is_lit(look: Look) -> bool:
-    """Return whether the mesh of a look has light."""
-    from vizlight.mesh.blocks import all_blocks
-
-    return any(_name(look) in block.array_names for block in all_blocks(look.drawing.lit.run()))
 
 
 def _checks(look: Look) -> list[Step]:

@@ -84,9 +84,22 @@ class Range(NamedTuple):
         return words + "; one value below, in a region apart, is grey" * self.apart
 
 
-def range_shown(
-    values: Array, *, lengths: bool = False, amounts: bool = False, scan: bool = False
-) -> Range:
+def range_of_scan(values: Array) -> Range:
+    """Return the range of a bar of the values of a scan in grey: its brightest hundredth is white.
+
+    Parameters
+    ----------
+    values : ndarray
+        Finite values, one at least.
+    """
+    low, high = float(values.min()), float(values.max())
+    end = float(np.percentile(values, BRIGHTEST))
+    step = (end - low) / 10 or 1.0
+    end = _rounded(end, step, np.ceil)
+    return Range(_rounded(low, step, np.floor), end, clipped=(False, high > end))
+
+
+def range_shown(values: Array, *, lengths: bool = False, amounts: bool = False) -> Range:
     """Return the range of a bar that shows values.
 
     Parameters
@@ -97,8 +110,6 @@ def range_shown(
         Whether they are lengths of vectors, with a bar that may be logarithmic.
     amounts : bool
         Whether they may be amounts on a map, with such a bar, and a ground where they are 0.
-    scan : bool
-        Whether they are those of a scan in grey, of which the brightest hundredth is white.
 
     Returns
     -------
@@ -107,11 +118,6 @@ def range_shown(
         few others take much of the bar; of decades where lengths are skewed.
     """
     low, high = float(values.min()), float(values.max())
-    if scan:
-        end = float(np.percentile(values, BRIGHTEST))
-        step = (end - low) / 10 or 1.0
-        end = _rounded(end, step, np.ceil)
-        return Range(_rounded(low, step, np.floor), end, clipped=(False, high > end))
     first, median, third = np.percentile(values, (25, 50, 75))
     if (lengths or amounts) and low >= -NOISE * high < 0:
         usual, top = np.percentile(values[values > 0], (50, 98))

@@ -10,7 +10,7 @@ import pyvista as pv
 import scipy
 
 from vizlight import _check
-from vizlight._types import Array, Bools
+from vizlight._types import AnyArray, Array, Bools
 from vizlight.mesh import records
 
 __all__ = ["cut_open"]
@@ -25,8 +25,6 @@ MIDDLE, _SHARE = 0.5, "vizlight share"
 #: Steps along the longest side in which the skin is sought, and the thickness in these steps of
 #: what has the values of skin.
 FINE, THICKNESS, SMOOTH = 320, 3, 1.5
-#: Axis and number of the points on each side of a scan.
-ENDS = list(itertools.product(range(3), (0, -1)))
 
 
 def cut_open(
@@ -103,9 +101,14 @@ def cut_open(
     return pv.MultiBlock({"cut": cut, "skin": skin})
 
 
+def _ends(values: AnyArray) -> list[AnyArray]:
+    """Return the values on the six sides of a scan, as views."""
+    return [np.moveaxis(values, axis, 0)[end] for axis in range(3) for end in (0, -1)]
+
+
 def _inside(values: Array) -> Array | None:
     """Return the share of each voxel that is body, 0.5 on the skin; None for no body in air."""
-    sides = [np.moveaxis(values, axis, 0)[end] for axis, end in ENDS]
+    sides = _ends(values)
     ground = min(np.nanmedian(side) for side in sides)
     some = values.ravel()[:: values.size // SAMPLE + 1] - ground
     darkest, brightest = np.nanpercentile(some, (1, 99))
@@ -124,9 +127,8 @@ def _inside(values: Array) -> Array | None:
     share[scipy.ndimage.binary_erosion(body, iterations=THICKNESS, border_value=1)] = 1
     smooth: Array = scipy.ndimage.gaussian_filter(share, SMOOTH, mode="nearest")
     # Where the scan ends, skin beside it is no part of that end.
-    for axis, end in ENDS:
-        plane = np.moveaxis(share, axis, 0)[end]
-        np.moveaxis(smooth, axis, 0)[end] = scipy.ndimage.gaussian_filter(plane, SMOOTH)
+    for plane, smooth_plane in zip(_ends(share), _ends(smooth), strict=True):
+        smooth_plane[:] = scipy.ndimage.gaussian_filter(plane, SMOOTH)
     return smooth
 
 
@@ -139,21 +141,18 @@ def _air(is_dark: Bools) -> Bools:
         scipy.ndimage.binary_erosion(coarse, None, GAP, border_value=1)
     )
     is_air = np.zeros(count + 1, np.bool_)
-    for axis, end in ENDS:
-        is_air[np.unique(np.moveaxis(part, axis, 0)[end])] = True
+    for plane in _ends(part):
+        is_air[np.unique(plane)] = True
     is_air[0] = False
     around = is_air[part]
     for axis, (size, step) in enumerate(zip(is_dark.shape, steps, strict=True)):
         around = np.take(around, np.arange(size) // step, axis=axis)
     around &= is_dark
     # On an end of the scan what is dark up to its edges is air; what is dark in a body has a rim.
-    for axis, end in ENDS:
-        dark = np.moveaxis(is_dark, axis, 0)[end]
+    for dark, plane in zip(_ends(is_dark), _ends(around), strict=True):
         edges = np.ones(dark.shape, np.bool_)
         edges[1:-1, 1:-1] = False
-        np.moveaxis(around, axis, 0)[end] |= scipy.ndimage.binary_propagation(
-            edges & dark, mask=dark
-        )
+        plane |= scipy.ndimage.binary_propagation(edges & dark, mask=dark)
     # Narrow folds of the skin, as around the eyes, are air too, as deep as the gaps are wide.
     reach = 2 * (GAP + 1) * max(steps)
     return scipy.ndimage.binary_dilation(around, iterations=reach, mask=is_dark)

@@ -62,9 +62,9 @@ class Figure:
     def score(self) -> float:
         """Bits in those of an answer within the tolerance, the figure by which questions compare.
 
-        Of equal answers ``1 / guessed`` are that far apart, and ``-log2(guessed)`` bits tell one
-        of them from the others. It is 0 where a question is unreadable, and above 1 where more is
-        told than is asked.
+        A reader has room for ``1 / guessed`` answers that far apart, and needs ``-log2(guessed)``
+        bits to tell one from the others. The score is 0 where a question is unreadable, and above 1
+        where more is told than is asked.
         """
         return 0.0 if self.unreadable else self.bits / -math.log2(self.guessed)
 

@@ -29,18 +29,18 @@ def test_rays_meet_the_cylinders_that_each_of_them_meets(kind, lamp):
     """Against rays that are tested with every line, without cells or pieces."""
     (light, near), random = lamp, np.random.default_rng(5)
     middles, tangents = some_lines(kind, random)
-    lines, targets, places, own = points_of(middles, tangents, random, 60)
+    lines, targets, places, line_of_place = points_of(middles, tangents, random, 60)
     way = np.asarray(light) - places if near else np.tile(light, (len(places), 1))
     reach = np.linalg.norm(way, axis=1) if near else np.full(len(places), np.inf)
     way = unit(way)
-    side = unit(np.cross(way, tangents[own])) * DIAMETER
+    side = unit(np.cross(way, tangents[line_of_place])) * DIAMETER
     free = [
-        ~shaded(places + x * side, way, own, middles, tangents, LENGTH, DIAMETER, reach)
+        ~shaded(places + x * side, way, line_of_place, middles, tangents, LENGTH, DIAMETER, reach)
         for x in cylinders.STARTS
     ]
-    found = cylinders.free_shares(lines, targets, DIAMETER, light, near)
+    shares = cylinders.free_shares(lines, targets, DIAMETER, light, near)
     assert 0.1 < np.mean(free) < 0.9
-    np.testing.assert_allclose(found, np.mean(free, axis=0), atol=1e-9)
+    np.testing.assert_allclose(shares, np.mean(free, axis=0), atol=1e-9)
 
 
 def test_a_ring_hides_its_far_side_and_not_the_point_itself():

@@ -195,11 +195,13 @@ def _levels(values: Array, error: float) -> tuple[Array, Indices]:
     Each begins at the first value above the one before, so that values that are nearly equal have
     one level.
     """
-    known = np.unique(values)
-    span = known[-1] - known[0]
+    unique = np.unique(values)
+    span = unique[-1] - unique[0]
     width = (1 + 1e-9) * span / max(np.ceil(span / (2 * error)), 1)
     starts = [0]
-    while (end := int(np.searchsorted(known, known[starts[-1]] + width, "right"))) < len(known):
+    while (end := int(np.searchsorted(unique, unique[starts[-1]] + width, "right"))) < len(unique):
         starts.append(end)
-    lasts = np.array([*starts[1:], len(known)]) - 1
-    return (known[starts] + known[lasts]) / 2, np.searchsorted(known[starts], values, "right") - 1
+    lasts = np.array([*starts[1:], len(unique)]) - 1
+    return (unique[starts] + unique[lasts]) / 2, np.searchsorted(
+        unique[starts], values, "right"
+    ) - 1

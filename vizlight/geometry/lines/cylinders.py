@@ -124,9 +124,9 @@ def free_shares(
     hits = _passages(medium, places, way, starts, side, pairs, thick)
     stops = (hits.first + hits.last > 0) & (hits.first + hits.last < 2 * reach[hits.point])
     if targets.halves is not None:
-        own = _own_lines(medium, places, pairs, thick)
+        own_lines = _own_lines(medium, places, pairs, thick)
         key = hits.point * _lines(medium) + hits.line
-        stops &= ~(np.isin(key, own) & (hits.first <= thick) & (hits.last >= -thick))
+        stops &= ~(np.isin(key, own_lines) & (hits.first <= thick) & (hits.last >= -thick))
     stopped = np.zeros((places.shape[1], len(starts)), np.bool_)
     stopped[hits.point[stops], hits.start[stops]] = True
     free: Array = 1 - stopped.mean(axis=1)

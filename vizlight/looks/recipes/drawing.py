@@ -24,7 +24,7 @@ from vizlight.looks import levels, map_parts, two_sides
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
-from vizlight.looks.ranges import range_shown
+from vizlight.looks.ranges import range_of_scan, range_shown
 from vizlight.looks.steps import Step
 from vizlight.maps import MISSING
 from vizlight.mesh import brains, dates, georeference, globes, meaning, series
@@ -464,7 +464,14 @@ class Case:
         return f"vizlight.on_{self.wishes.style}"
 
     def ranged(
-        self, values: Array, name: str, cmap: str, *, unit: float = 1.0, **kind: bool
+        self,
+        values: Array,
+        name: str,
+        cmap: str,
+        *,
+        unit: float = 1.0,
+        scan: bool = False,
+        **kind: bool,
     ) -> tuple[Keywords, str]:
         """Return the colours of values in the range that suits them, and words if it is not all.
 
@@ -478,6 +485,8 @@ class Case:
             Colour map where none is asked for.
         unit : float, default: 1.0
             Unit in which they are read, in that of the values.
+        scan : bool, default: False
+            Whether they are those of a scan in grey.
         **kind
             Kind of the values, as for :func:`vizlight.looks.ranges.range_shown`.
         """
@@ -489,7 +498,7 @@ class Case:
             is_even = limits is not None and limits[0] == -limits[1]
             cmap = AROUND_ZERO[cmap] if is_even and is_plain else cmap
             return {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors, ""
-        shown = range_shown(values, **kind)
+        shown = range_of_scan(values) if scan else range_shown(values, **kind)
         if shown.is_signed and is_plain:
             shown, cmap = shown.around_zero(values), AROUND_ZERO[cmap]
         missing = DARK_MISSING if cmap == AROUND_ZERO[ON_SURFACES] else MISSING

@@ -28,7 +28,6 @@ from vizlight.looks.wishes import even_light
 from vizlight.mesh import meaning, neurons
 from vizlight.model import kernels
 from vizlight.vtk.cells import connectivity
-from vizlight.vtk.normals import is_scan
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Keywords
@@ -299,9 +298,7 @@ def points(case: Case) -> Drawing:
     if array is not None:
         # Light on balls would change the colours by which they are read.
         drawn["lighting"] = False
-    # Few points have no normals to light.
-    has_normals = mesh.run().point_data.active_normals is not None or is_scan(mesh.run())
-    lit = case.lit(mesh, scene) if has_normals or case.question != "shape" else mesh
+    lit = case.lit(mesh, scene)
     notes = [note] if note else []
     return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=mesh)
 

@@ -189,7 +189,7 @@ def _keys(case: Case, scene: Step, title: str) -> list[Keywords]:
 def plane(case: Case) -> Drawing:
     """Draw a plane without data, which no light can shape: grey, with the edges of its cells.
 
-    Of many cells of unequal sizes these are shown, where most of them are.
+    Sizes of cells are shown, near most of the cells, where many differ.
     """
     mesh = case.surface
     drawn: Keywords = {"color": GREY}
