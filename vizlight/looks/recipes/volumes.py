@@ -65,8 +65,6 @@ DEBRIS = 0.003
 #: Percentiles of the values on the faces of a cut, and least share of those of the volume through
 #: which they run where they are worth a cut.
 MOST_OF_CUT, LEAST_OF_CUT = (10, 90), 0.1
-#: Share of its range through which a second array runs on an isosurface that shows it.
-LEAST_SPREAD = 0.02
 #: Drawing of an isosurface around a molecule, whose far side would hide it too, and normals that
 #: point out of it.
 CLEAR = {"opacity": 0.5, "culling": "back"}
@@ -93,7 +91,9 @@ class _Level(NamedTuple):
 
 
 def isosurface(case: Case) -> Drawing:
-    """Draw the isosurface through the steepest places, or three slices where none is good.
+    """Draw the isosurface through the steepest places, or slices where none is good.
+
+    Where the values that it encloses differ, the isosurface is cut open to them.
 
     The skin of a scan of a body tells least of it: bones are shown where their numbers are known,
     else the body is cut open.
@@ -112,7 +112,8 @@ def isosurface(case: Case) -> Drawing:
         mesh = Step("outward", ".compute_normals", mesh, **OUTWARD)
     if not level.is_sure and _is_crumbs(mesh.run()):
         return _cut_open(case) or slices(case, "; isosurfaces are crumbs")
-    second = None if case.wishes.question == "shape" else _second(case, mesh.run())
+    # One that is asked for besides is shown on it.
+    second = case.contents.named(str(case.wishes.picture.get("scalars") or ""))
     is_free = not level.is_sure and not has_molecule and not isinstance(level.at, tuple)
     if second is None and is_free and not _is_of_scanner(case, array):
         opened = _opened(case, level)
@@ -290,17 +291,6 @@ def _is_crumbs(mesh: pv.DataSet) -> bool:
         return False
     sizes = np.bincount(piece_numbers(mesh))
     return len(sizes) > MOST_PIECES and sizes.max() < LARGE * sizes.sum()
-
-
-def _second(case: Case, isosurface: pv.DataSet) -> Named | None:
-    """Return the array of a volume, of values or kinds, that changes along an isosurface."""
-    for each in case.contents.arrays:
-        if each.role in ("values", "kinds") and each.name in isosurface.array_names:
-            low, high = range_of(isosurface, each.name)
-            # An array that is a function of the values of the isosurface has one value on it.
-            if high - low > LEAST_SPREAD * np.subtract(*range_of(case.data.run(), each.name)[::-1]):
-                return each
-    return None
 
 
 def _is_rough(case: Case, mesh: Step, camera: Step) -> bool:
