@@ -404,7 +404,7 @@ def look(
         Further options. How files and data of xarray are read: ``time``, ``overlay``, ``at``,
         ``nodata``, as by :func:`vizlight.read`. Parts of the data: ``slice`` and ``clip`` (a plane,
         ``"z:4"`` or a normal and an origin), ``threshold`` (``"Temp:300:600"`` or a name and two
-        numbers), ``contour``, ``level``, ``warp``, ``exaggeration``, ``globe`` (a map of the whole
+        numbers), ``contour``, ``level`` (of an isosurface), ``warp``, ``exaggeration``, ``globe`` (a map of the whole
         earth on a ball, a raised one with ``warp`` or ``exaggeration``). The light: ``scene``, and
         options of :func:`vizlight.illuminate` or of the filter of the question, such as
         ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
@@ -690,6 +690,10 @@ def _chosen(data: Step, contents: Contents, wishes: Wishes) -> tuple[Rule, Case]
         if array is None and not rule.holds(contents):
             continue
         chosen = rule.array(contents) if array is None else array
+        has_level = rule.shown == "isosurface" or wishes.part.get("contour") is not None
+        if wishes.part.get("level") is not None and not has_level:
+            expected = "contour with it, of data that are no volume of values"
+            raise value_error("level", expected, "it alone")
         return rule, Case(data, contents, wishes, rule.question, chosen)
     return _explicit(data, contents, wishes, array, question)
 

@@ -12,8 +12,8 @@ from vizlight.maps import TWO_SIDED
 
 #: Distances of a quartile from the median at which values are far outside, 3 deviations of a normal
 #: distribution, the largest share of them that is clipped, and the share of the bar that they take;
-#: share up to which they are a few, and the shares of the bar that more of them take, on one side of
-#: the others and on both.
+#: share up to which they are a few, and the shares of the bar that more of them take, on one side
+#: of the others and on both.
 FENCE, MOST_OUTSIDE, LEAST_FREED, FEW, FREED_BY_MANY = 4.5, 0.1, 0.32, 0.002, (0.75, 0.45)
 #: Ratio of the 98th percentile to the median from which lengths have a logarithmic bar, and the
 #: ratio of its ends at most.

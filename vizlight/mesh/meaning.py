@@ -292,9 +292,7 @@ _USUAL = (
     (_ANY, "u v w"),
 )
 #: Names of places, of sizes of cells and of properties of rock along axes, which end as components.
-_NO_COMPONENT = (
-    r"ma[xy]|(perm\w*|tran\w*|mult|k)[_\W]?[xyz]|(.*[_\W])?([xyzh][_\W]|(x?lat|x?long?|mask|mapfac|angle|area|depth)[_\W]?)[muv][xy]?"
-)
+_NO_COMPONENT = r"ma[xy]|(perm\w*|tran\w*|mult|k)[_\W]?[xyz]|(.*[_\W])?([xyzh][_\W]|(x?lat|x?long?|mask|mapfac|angle|area|depth)[_\W]?)[muv][xy]?"
 #: A knot in metres a second.
 _KNOT = 1852 / 3600
 #: Letters of axes that stand anywhere in names, if their unit is one of motion or of stress.

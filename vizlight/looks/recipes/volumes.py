@@ -165,6 +165,8 @@ def _level(case: Case, array: Named) -> _Level | str:
         # Without active scalars VTK's filter ends the process.
         scan.attributes = {"active_scalars_name": array.name}
         volume = Step("smooth", ".gaussian_smooth", scan, std_dev=SMOOTH, scalars=array.name)
+    if (level := case.wishes.part.get("level")) is not None:
+        return _Level(level, volume, notes, not is_scan, is_sure=not is_auto)
     if is_auto and (size := _size_of_both_signs(values, volume, array)) is not None:
         if is_scan:
             volume = Step("closed", ".pad_image", volume, pad_value=0.0, scalars=array.name)
@@ -306,7 +308,7 @@ def slices(case: Case, why: str = "") -> Drawing:
     eye = case.eye(case.data)
     camera = case.camera(box, eye, boxed=True)
     cut, outside = _parts_of_cut(case, case.data, eye)
-    drawing = _of_cut(case, cut, camera, case.data)
+    drawing = _of_cut(case, cut, outside, camera, case.data)
     first, *strokes = drawing.layers
     faces = replace(case, data=outside, contents=Contents(outside.run()))
     layers = [first, Layer(outside, first.keywords), *strokes, *case.strokes([faces.creases])]
@@ -329,7 +331,7 @@ def _opened(case: Case, level: _Level) -> Drawing | None:
     boxed = level.boxed and max(sides) > LEAST_OF_BOX * max(case.contents.sides)
     box = Step("box", ".outline", case.data)
     camera = case.camera(box if boxed else outside, eye, boxed=boxed)
-    drawing = _of_cut(case, cut, camera, cut)
+    drawing = _of_cut(case, cut, outside, camera, cut)
     first, *strokes = drawing.layers
     lit = replace(case, data=outside, contents=Contents(outside.run()), question="value")
     light = wishes.light_of_surface()
@@ -363,7 +365,7 @@ def _toward(case: Case, mesh: Step, eye: Viewpoint) -> tuple[float, ...]:
     return tuple(np.round(way, 3).tolist())
 
 
-def _of_cut(case: Case, cut: Step, camera: Step, valued: Step) -> Drawing:
+def _of_cut(case: Case, cut: Step, outside: Step, camera: Step, valued: Step) -> Drawing:
     """Return the drawing of the faces of a cut, in colours for the values of a mesh."""
     array, is_gray = case.needed_array, _is_gray(case, case.needed_array)
     scene = case.wishes.scene("none", camera)
@@ -371,7 +373,8 @@ def _of_cut(case: Case, cut: Step, camera: Step, valued: Step) -> Drawing:
     drawn = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     faces = replace(case, data=cut, contents=Contents(cut.run()))
     layers = [Layer(cut, drawn), *case.strokes([faces.borders, faces.creases])]
-    lit = case.lit(cut, scene, **case.wishes.light_of_surface())
+    both = Step("both", ".append_polydata", cut, outside)
+    lit = case.lit(both, scene, **case.wishes.light_of_surface())
     notes = [note] if note else []
     return Drawing(layers, camera, scene, lit, "", [case.bar(array, colors)], notes)
 
