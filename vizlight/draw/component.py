@@ -98,8 +98,8 @@ class Component:
             Place where the light is computed: at the points of the mesh, the numbers that a filter
             attaches; or in each fragment, from interpolated tangents and normals, which is right
             between the points of a coarse mesh too; of lines with halos at three places of each
-            segment, unless there is a highlight or a lamp at a place. "auto": in fragments where
-            the plan allows. ``"fragments"`` warns where it does not, and casts the cos-theta
+            segment, if no highlight and no lamp at a place changes it faster. "auto": in fragments
+            where the plan allows. ``"fragments"`` warns where it does not, and casts the cos-theta
             shadows of an even height field in each fragment, of lamps that move too.
         scalars : str or array_like, optional
             Array that gives the colours, by its name or with one row per point or cell. Light keeps
