@@ -266,6 +266,7 @@ OWN = {
     "creases.creases": {"surface": ball},
     "creases.borders": {"surface": ball},
     "cutaways.cut_open": {"volume": block, "name": "v"},
+    "cutaways.without_corner": {"volume": block, "name": "v"},
     "molecules.backbone": {"atoms": chain},
     "montages.side_by_side": {"volume": block, "name": "v"},
     "molecules.atoms_in": {"volume": orbital},

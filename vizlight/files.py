@@ -45,7 +45,7 @@ from vizlight.mesh import (
 )
 from vizlight.mesh.blocks import DataSetT
 from vizlight.mesh.creases import borders, creases
-from vizlight.mesh.cutaways import cut_open
+from vizlight.mesh.cutaways import cut_open, without_corner
 from vizlight.mesh.derived import (
     check_dataset,
     layer_of,
@@ -72,7 +72,7 @@ except ImportError:  # on Windows
 __all__ = [
     "FileError", "atoms_in", "backbone", "borders", "creases", "cut_open", "layer_of", "layers",
     "read", "read_parts", "side_by_side", "stretched", "surface_of", "warped", "with_vectors",
-    "without_fills", "write_mesh",
+    "without_corner", "without_fills", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.

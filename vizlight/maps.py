@@ -68,15 +68,22 @@ colormaps.register(even, force=True)
 speed = ListedColormap(colormaps["YlGnBu"](0.8 * np.arange(256) / 255), name="vizlight.speed")
 colormaps.register(speed, force=True)
 #: Maps of a look that run in lightness too, as most printed ones, yet not so far that light on them
-#: is taken for another value: violet over green to yellow on surfaces, and the parts of viridis
-#: that stand out from a white and from a dark ground, with what is large standing out most.
+#: is taken for another value: violet over green to yellow on surfaces, indigo over crimson to
+#: yellow for temperatures, and the parts of viridis and of these that stand out from a white and
+#: from a dark ground, with what is large standing out most, and what is hot red.
 _VIOLET_TO_YELLOW = ["#5a4fb0", "#3f7fc9", "#35a7b8", "#4fc087", "#a5d24a", "#f2dc3c"]
+_INDIGO_TO_YELLOW = ["#4a45a6", "#7d40a8", "#bb4380", "#e3624d", "#f4993c", "#f9df74"]
 _surface = LinearSegmentedColormap.from_list("vizlight.surface", _VIOLET_TO_YELLOW)
-_VIRIDIS = colormaps["viridis"]
-_paper = ListedColormap(_VIRIDIS(np.linspace(0.8, 0.0, 256)), name="vizlight.on_paper")
-_dark = ListedColormap(_VIRIDIS(np.linspace(0.3, 1.0, 256)), name="vizlight.on_dark")
-for _map in (_surface, _paper, _dark):
-    colormaps.register(_map, force=True)
+_heat = LinearSegmentedColormap.from_list("vizlight.heat", _INDIGO_TO_YELLOW)
+for _map, _name, _on_paper, _on_dark in (
+    (colormaps["viridis"], "on", (0.8, 0.0), (0.3, 1.0)),
+    (_heat, "heat_on", (0.0, 0.75), (0.15, 1.0)),
+):
+    for _ground, _ends in (("paper", _on_paper), ("dark", _on_dark)):
+        _part = ListedColormap(_map(np.linspace(*_ends, 256)), name=f"vizlight.{_name}_{_ground}")
+        colormaps.register(_part, force=True)
+colormaps.register(_surface, force=True)
+colormaps.register(_heat, force=True)
 
 
 #: Colours of the sea bed from deep to shallow, and of the ground from low to high.

@@ -1,4 +1,4 @@
-"""Tests of scans that are cut open."""
+"""Tests of volumes without the corner toward the eye, and of scans that are cut open."""
 
 import numpy as np
 import pytest
@@ -74,3 +74,84 @@ def test_only_scans_are_cut_open():
     sheet["T1"] = np.arange(16.0)
     with pytest.raises(ValueError, match="volume: expected an image of two points at least along"):
         files.cut_open(sheet, "T1")
+
+
+def shell(toward, level=None, *, low=False):
+    """Return the parts of a ball of values in a block, and the grid."""
+    grid = pv.ImageData(dimensions=(33, 31, 29), origin=(-16, -15, -14)).cast_to_unstructured_grid()
+    grid["v"] = np.linalg.norm(grid.points, axis=1) * (1 if low else -1)
+    before = grid.copy()
+    parts = files.without_corner(grid, "v", level, toward=toward)
+    assert grid == before
+    return parts["cut"], parts["outside"], grid
+
+
+@pytest.mark.parametrize("toward", [(1, 1, 1), (-1, 2, -0.5), (0, -1, 0.05), (1, 1, 0)])
+def test_a_block_has_the_area_and_the_values_of_one_without_a_corner(toward):
+    cut, outside, grid = shell(toward)
+    signs = np.where(np.abs(toward) < 0.2 * np.abs(toward).max(), 0, np.sign(toward))
+    for part in (cut, outside):
+        # Nothing is left in the corner, and values are those of the grid.
+        depths = (np.asarray(part.points) * signs)[:, signs != 0].min(axis=1)
+        assert depths.max() == pytest.approx(0, abs=1e-5)
+        np.testing.assert_allclose(part["v"], part.sample(grid)["v"], atol=0.05)
+    # A corner takes as much from the sides as its own faces have; a half less.
+    area = grid.extract_surface(algorithm="dataset_surface").area
+    x, y, z = sizes = np.array([32.0, 30.0, 28.0])
+    faces = np.array([y * z, x * z, x * y]) / 2.0 ** (np.sum(signs != 0) - 1)
+    ends = np.prod(sizes) / sizes * 2 / 2.0 ** np.sum(signs != 0)
+    taken = (faces * (signs != 0)).sum() + (ends * (signs == 0)).sum()
+    assert cut.area == pytest.approx((faces * (signs != 0)).sum(), rel=1e-4)
+    assert outside.area == pytest.approx(area - taken, rel=1e-4)
+
+
+@pytest.mark.parametrize("low", [False, True])
+def test_what_an_isosurface_encloses_is_cut_whichever_side_is_inside(low):
+    radius = 10.0
+    cut, outside, _ = shell((1, 1, 1), radius if low else -radius, low=low)
+    assert cut.area == pytest.approx(0.75 * np.pi * radius**2, rel=0.02)
+    assert outside.area == pytest.approx(3.5 * np.pi * radius**2, rel=0.02)
+    assert np.abs(outside["v"]) == pytest.approx(radius, abs=1e-4)
+    assert np.linalg.norm(outside.points, axis=1) == pytest.approx(radius, abs=0.1)
+
+
+def test_what_the_volume_cuts_off_is_closed():
+    grid = pv.ImageData(dimensions=(21, 21, 21)).cast_to_rectilinear_grid()
+    grid["v"] = -np.linalg.norm(grid.points[:, :2] - 10, axis=1)
+    outside = files.without_corner(grid, "v", -5.0)["outside"]
+    assert outside.bounds[4:] == (0.0, 20.0)
+    # The upper end lacks a quarter, the mantle an eighth.
+    area = np.pi * 25 * 1.75 + 2 * np.pi * 5 * 20 * 7 / 8
+    assert outside.area == pytest.approx(area, rel=0.02)
+
+
+def test_values_of_cells_stay_those_of_their_cells():
+    grid = pv.ImageData(dimensions=(5, 5, 5))
+    grid.cell_data["v"] = np.arange(64.0)
+    parts = files.without_corner(grid, "v")
+    for part in (parts["cut"], parts["outside"]):
+        assert set(part.cell_data["v"]) <= set(range(64))
+
+
+def test_a_level_that_nothing_reaches_leaves_nothing():
+    parts = files.without_corner(pv.ImageData(dimensions=(5, 5, 5)).elevation(), "Elevation", 9.0)
+    assert not parts["cut"].n_points
+    assert not parts["outside"].n_points
+
+
+@pytest.mark.parametrize(
+    ("keywords", "error", "text"),
+    [
+        ({"volume": pv.Sphere()}, ValueError, "volume: expected a mesh with solid cells"),
+        ({"volume": 3}, TypeError, "volume: expected a pyvista.DataSet with solid cells"),
+        ({"name": "w"}, ValueError, "name: expected a point array of one component"),
+        ({"level": np.nan}, ValueError, "level: expected"),
+        ({"toward": (0, 0, 0)}, ValueError, "toward: expected"),
+    ],
+)
+def test_bad_input_of_a_cut_is_named(keywords, error, text):
+    grid = pv.ImageData(dimensions=(5, 5, 5))
+    grid["v"] = np.arange(125.0)
+    options = {"volume": grid, "name": "v"} | keywords
+    with pytest.raises(error, match=text):
+        files.without_corner(options.pop("volume"), options.pop("name"), **options)

@@ -1,4 +1,4 @@
-"""Scans cut open: the skin of a body in air, and the faces of the corner taken out of it."""
+"""Volumes without the corner toward the eye: the faces of the cut, and what is left outside."""
 
 from __future__ import annotations
 
@@ -11,17 +11,22 @@ import scipy
 
 from vizlight import _check
 from vizlight._types import AnyArray, Array, Bools
-from vizlight.mesh import records
+from vizlight.mesh import blocks, records
 
-__all__ = ["cut_open"]
+__all__ = ["cut_open", "without_corner"]
 
 #: Share of the range of a scan up to which nothing is of a body, share of the median of what is
 #: above that up to which it is dark, share of its sides that are, and values that are looked at.
 DARK, EDGE, MOSTLY, SAMPLE = 0.1, 0.3, 0.5, 100_000
 #: Steps along the longest side of a scan in which gaps of a body are closed, and half their width.
 COARSE, GAP = 90, 3
-#: Share of body on the skin, and name of the temporary array of shares.
+#: Share of body on the skin, and name of the temporary array of shares and of distances.
 MIDDLE, _SHARE = 0.5, "vizlight share"
+#: Share of the largest part of a direction below which it does not point along an axis.
+ALONG = 0.2
+#: Distance of points that are one, and distance from them of a cut, as shares of the size of a
+#: surface.
+ROUNDING, BESIDE_POINTS = 1e-6, 1e-3
 #: Steps along the longest side in which the skin is sought, and the thickness in these steps of
 #: what has the values of skin.
 FINE, THICKNESS, SMOOTH = 320, 3, 1.5
@@ -96,9 +101,85 @@ def cut_open(
             face = scan.extract_subset(np.ravel(extent).tolist())
             face.point_data[_SHARE] = shares.ravel(order="F")
             faces.append(face.clip_scalar(scalars=_SHARE, value=MIDDLE, invert=False))
-    cut = pv.merge(faces).extract_surface(algorithm="dataset_surface")
+    cut = _merged(faces)
     del cut.point_data[_SHARE]
     return pv.MultiBlock({"cut": cut, "skin": skin})
+
+
+def without_corner(
+    volume: pv.DataSet,
+    name: str,
+    /,
+    level: float | None = None,
+    toward: Sequence[float] = (1.0, 1.0, 1.0),
+) -> pv.MultiBlock:
+    """Return a volume, or what an isosurface encloses, with the corner toward an eye taken out.
+
+    Parameters
+    ----------
+    volume : pyvista.DataSet
+        Mesh with solid cells, which is not changed.
+    name : str
+        Name of an array of one number per point, or per cell where there is no level.
+    level : float, optional
+        Level of the isosurface. What is above it is left, or what is below it where less of the
+        outer surface of the volume is. Default: all of the volume is left.
+    toward : sequence of 3 float, default: (1, 1, 1)
+        Direction toward the eye. Along each axis along which it points, the half on its side is
+        taken out, from the middle of the box of what is left.
+
+    Returns
+    -------
+    pyvista.MultiBlock
+        ``"cut"``, the faces of the cut, and ``"outside"``, the rest of the surface, both with the
+        values. Without points where nothing is left.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no mesh with solid cells, has no such array, the level is no finite number, or the
+        direction has no length.
+
+    Examples
+    --------
+    >>> import pyvista as pv
+    >>> from vizlight import files
+    >>> block = pv.ImageData(dimensions=(9, 9, 9)).cast_to_unstructured_grid()
+    >>> block["height"] = block.points[:, 2]
+    >>> parts = files.without_corner(block, "height", 6.0)
+    >>> [round(end, 1) for end in parts["cut"].bounds]
+    [4.0, 8.0, 4.0, 8.0, 7.0, 8.0]
+    """
+    _check.instance("volume", volume, pv.DataSet, "a pyvista.DataSet with solid cells")
+    if not volume.n_cells or volume.max_cell_dimensionality != 3:
+        raise _check.value_error("volume", "a mesh with solid cells", type(volume).__name__)
+    name = _check.text("name", name, expected="the name of an array")
+    if level is not None or name not in volume.cell_data:
+        records.scalars_of(volume, "name", name)
+    direction = np.array(_check.vector("toward", toward, direction=True, n=3))
+    signs = np.where(np.abs(direction) < ALONG * np.abs(direction).max(), 0, np.sign(direction))
+    hull = blocks.outer_surface(volume)[0]
+    isosurface, is_low = pv.PolyData(), False
+    if level is not None:
+        level = _check.number("level", level)
+        is_low = bool(np.mean(np.asarray(hull[name]) > level) > MIDDLE)
+        hull = hull.clip_scalar(scalars=name, value=level, invert=is_low)
+        isosurface = volume.contour([level], scalars=name, compute_normals=False)
+    body = _merged([hull, isosurface])
+    middle = np.reshape(body.bounds, (3, 2)).mean(axis=1)
+    # Clipped through their points, cells of an isosurface would have sides without length.
+    middle += BESIDE_POINTS * body.length * (level is not None)
+    faces = []
+    for axis in np.flatnonzero(signs):
+        face = volume.slice(np.eye(3)[axis], origin=middle)
+        for other in np.flatnonzero(signs):
+            if other != axis and face.n_points:
+                face = face.clip(signs[other] * np.eye(3)[other], origin=middle, invert=False)
+        if level is not None and face.n_points:
+            face = face.clip_scalar(scalars=name, value=level, invert=is_low)
+        faces.append(face)
+    outside = [_flat_without(hull, middle, signs), _bent_without(isosurface, middle, signs)]
+    return pv.MultiBlock({"cut": _merged(faces), "outside": _merged(outside)})
 
 
 def _ends(values: AnyArray) -> list[AnyArray]:
@@ -187,10 +268,45 @@ def _skin(
     body = pv.ImageData(dimensions=inside.shape, spacing=steps.tolist())
     body.point_data[_SHARE] = inside.ravel(order="F")
     skin = body.contour([MIDDLE], scalars=_SHARE, compute_normals=False).connectivity("largest")
-    signs = np.where(is_high, 1.0, -1.0)
-    # Least of the three distances from the planes of the cut: above 0 in the corner alone.
-    skin.point_data[_SHARE] = ((skin.points - corner * steps) * signs).min(axis=1)
-    skin = skin.clip_scalar(scalars=_SHARE, value=0.0)
+    skin = _bent_without(skin, corner * steps, np.where(is_high, 1.0, -1.0))
     skin.clear_data()
     placed: pv.PolyData = skin.transform(volume.index_to_physical_matrix, inplace=False)
     return placed
+
+
+def _flat_without(surface: pv.PolyData, middle: Array, signs: Array) -> pv.PolyData:
+    """Return a surface without the corner on one side of the middle along each axis with a sign.
+
+    Its edges are straight. Along them slivers remain, which would spoil normals.
+    """
+    left, corner = [], surface
+    for axis in np.flatnonzero(signs):
+        normal = signs[axis] * np.eye(3)[axis]
+        if corner.n_points:
+            left.append(corner.clip(normal, origin=middle.tolist()))
+            corner = corner.clip(normal, origin=middle.tolist(), invert=False)
+    return _merged(left)
+
+
+def _bent_without(surface: pv.PolyData, middle: Array, signs: Array) -> pv.PolyData:
+    """Return a surface of small cells without the corner, whose edges may end in a cell."""
+    if not surface.n_points:
+        return surface
+    surface = surface.copy(deep=False)
+    # Least of the distances from the planes of the cut: above 0 in the corner alone.
+    depths = ((surface.points - middle) * signs)[:, signs != 0]
+    surface.point_data[_SHARE] = depths.min(axis=1)
+    rest: pv.PolyData = surface.clip_scalar(scalars=_SHARE, value=0.0)
+    del rest.point_data[_SHARE]
+    return rest
+
+
+def _merged(parts: list[pv.PolyData]) -> pv.PolyData:
+    """Return surfaces as one, without points where none has any."""
+    first, *others = [part for part in parts if part.n_points] or [pv.PolyData()]
+    if not others:
+        return first
+    # Along the seams of parts that were clipped by themselves points differ by rounding.
+    grid = first.cast_to_unstructured_grid().merge(others, tolerance=ROUNDING * first.length)
+    merged: pv.PolyData = grid.extract_surface(algorithm="dataset_surface")
+    return merged

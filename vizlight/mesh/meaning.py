@@ -596,12 +596,28 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
 
 #: Names of degrees Celsius, in lower case and in the singular.
 _CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius", "deg c"}
+#: Names of temperatures, in lower case.
+_TEMPERATURE = re.compile(r"t|theta|(.*[^a-z])?temp(erature)?s?([^a-z].*)?|(.*[^a-z])?(sst|tas)")
 #: Symbols of units that are written out, and of their prefixes.
 _PREFIXES = {"": "", "kilo": "k", "hecto": "h", "centi": "c", "milli": "m"}
 _SYMBOLS = {"meter": "m", "metre": "m", "second": "s", "gram": "g", "pascal": "Pa", "kelvin": "K"}
 _WRITTEN_OUT = re.compile("(kilo|hecto|centi|milli)?(meter|metre|second|gram|pascal|kelvin)s?")
 #: A factor of a unit, such as m, s-1, s**-1 or m^2.
 _FACTOR = re.compile(r"([A-Za-z%]+)(?:\*\*|\^)?(-?[1-3])?")
+
+
+def is_temperature(mesh: pv.DataSet, name: str) -> bool:
+    """Return whether an array is one of temperatures, by its name or what its file says of it.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    name : str
+        Name of an array.
+    """
+    attributes = of(mesh).arrays.get(name, {})
+    words = (name, attributes.get("standard_name", ""), attributes.get("long_name", ""))
+    return any(_TEMPERATURE.fullmatch(word.lower()) for word in words)
 
 
 def _symbol(name: str) -> str:

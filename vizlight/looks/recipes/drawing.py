@@ -46,6 +46,10 @@ ON_BANDS, ON_GROUND, GROUND = "vizlight.bands", "vizlight.amounts", "#fbfbf8"
 #: Those of values around 0 in place of these; on lit surfaces one without dark ends, by Moreland,
 #: Diverging color maps for scientific visualization (2009).
 AROUND_ZERO = {LIGHTNESS: ON_BANDS, ON_SURFACES: "coolwarm"}
+#: Those of temperatures in place of these and of maps for thin lines.
+OF_HEAT = {LIGHTNESS: "vizlight.heat", ON_SURFACES: "vizlight.heat"} | {
+    f"vizlight.on_{ground}": f"vizlight.heat_on_{ground}" for ground in ("paper", "dark")
+}
 #: Colour of missing values where 0 is light grey.
 DARK_MISSING = "#7a7a7a"
 #: Light of a room at the place that is as bright as white paper in other light: a surface without
@@ -289,13 +293,15 @@ class Case:
 
     def edges(self, camera: Step) -> list[Layer]:
         """Return the layers of the borders and creases of the surface, and of its box."""
-        drawn: Keywords = {"color": DARK, "line_width": self.width, "lighting": False, **BESIDE}
-        if self.is_isosurface:
-            # Its borders are where the box of the volume cuts it, and no part of its shape.
-            drawn |= BOX_EDGES
-        every = [self.borders, self.creases]
-        layers = [Layer(lines, drawn, live=False) for lines in every if lines is not None]
+        # Borders of an isosurface are where the box of the volume cuts it, no part of its shape.
+        drawn = BOX_EDGES if self.is_isosurface else {}
+        layers = self.strokes([self.borders, self.creases], **drawn)
         return layers if self.box is None else [*layers, *self.boxed(self.box, camera)]
+
+    def strokes(self, lines: Sequence[Step | None], **drawn: object) -> list[Layer]:
+        """Return the layers of dark lines, of those that are there."""
+        ink: Keywords = {"color": DARK, "line_width": self.width, "lighting": False, **BESIDE}
+        return [Layer(step, ink | drawn, live=False) for step in lines if step is not None]
 
     def boxed(self, box: Step, camera: Step) -> list[Layer]:
         """Return the layers of a box and of the numbers along its edges.
@@ -501,6 +507,8 @@ class Case:
         shown = range_of_scan(values) if scan else range_shown(values, **kind)
         if shown.is_signed and is_plain:
             shown, cmap = shown.around_zero(values), AROUND_ZERO[cmap]
+        elif meaning.is_temperature(self.data.run(), name):
+            cmap = OF_HEAT.get(cmap, cmap)
         missing = DARK_MISSING if cmap == AROUND_ZERO[ON_SURFACES] else MISSING
         colors = {"cmap": ON_GROUND if shown.ground else cmap, "nan_color": missing}
         colors |= self.wishes.colors

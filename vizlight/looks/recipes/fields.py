@@ -7,7 +7,6 @@ Where that is in doubt the picture is read back, and the next is drawn if it can
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -30,7 +29,7 @@ from vizlight.looks.recipes.drawing import (
 )
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
-from vizlight.mesh import records
+from vizlight.mesh import meaning, records
 from vizlight.mesh.strokes import FLAT, TUBE
 from vizlight.model import kernels
 from vizlight.vtk.polylines import has_lines_only
@@ -79,8 +78,6 @@ WALL_LIGHT: Keywords = {"ambient": 0.72, "diffuse": 0.2, "smooth_shading": True}
 SENSE = "; arrows point downstream"
 #: Stroke lengths that strokes move in a movie where vectors are long.
 TRAVEL = 3.0
-#: Names of temperatures.
-TEMPERATURE = re.compile(r"t|temp(erature)?([ _]?[kc])?|theta")
 #: Share by which the shortest vectors are shorter than most, below which lengths are no speed.
 EVEN = 0.05
 #: Most cells of a volume in which lines are evenly spaced, and the number of lines in larger ones.
@@ -328,7 +325,9 @@ def _colors_of_flow(case: Case, mesh: Step, lines: Step) -> tuple[Keywords, str,
     it, and nobody asks for the vectors alone; else of the speed.
     """
     array = case.needed_array
-    warm = next((one for one in case.contents.arrays if _is_temperature(one)), None)
+    arrays = [array for array in case.contents.arrays if array.role == "values"]
+    source = case.data.run()
+    warm = next((array for array in arrays if meaning.is_temperature(source, array.name)), None)
     if warm is not None and case.wishes.array is None and warm.name in lines.run().point_data:
         colors, note = case.ranged_of(lines, warm, case.map_on_ground)
         key = case.bar(warm, colors)
@@ -338,10 +337,6 @@ def _colors_of_flow(case: Case, mesh: Step, lines: Step) -> tuple[Keywords, str,
     speeds = np.asarray(lines.run()[speed], dtype=np.float64)
     colors, note = case.ranged(speeds, "speed", case.map_on_ground, lengths=True)
     return {"scalars": speed, **colors}, note, [_bar(mesh, array.name, colors, SENSE)]
-
-
-def _is_temperature(array: Named) -> bool:
-    return array.role == "values" and TEMPERATURE.fullmatch(array.name.lower()) is not None
 
 
 def _where_it_flows(mesh: Step, name: str) -> Step:

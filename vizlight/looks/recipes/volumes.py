@@ -14,7 +14,7 @@ from vizlight.looks.contents import Contents
 from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around
 from vizlight.looks.recipes import fields, lines, surfaces
 from vizlight.looks.recipes.drawing import (
-    LIGHTNESS,
+    ON_SURFACES,
     Doubt,
     Drawing,
     Layer,
@@ -62,6 +62,9 @@ SMOOTH = 0.7
 SMOOTHED = f"the values are smoothed by {SMOOTH:g} voxels"
 #: Share of the points of the largest piece of a scan below which others are debris.
 DEBRIS = 0.003
+#: Percentiles of the values on the faces of a cut, and least share of those of the volume through
+#: which they run where they are worth a cut.
+MOST_OF_CUT, LEAST_OF_CUT = (10, 90), 0.1
 #: Share of its range through which a second array runs on an isosurface that shows it.
 LEAST_SPREAD = 0.02
 #: Drawing of an isosurface around a molecule, whose far side would hide it too, and normals that
@@ -109,6 +112,12 @@ def isosurface(case: Case) -> Drawing:
         mesh = Step("outward", ".compute_normals", mesh, **OUTWARD)
     if not level.is_sure and _is_crumbs(mesh.run()):
         return _cut_open(case) or slices(case, "; isosurfaces are crumbs")
+    second = None if case.wishes.question == "shape" else _second(case, mesh.run())
+    is_free = not level.is_sure and not has_molecule and not isinstance(level.at, tuple)
+    if second is None and is_free and not _is_of_scanner(case, array):
+        opened = _opened(case, level)
+        if opened is not None:
+            return replace(opened, notes=[*opened.notes, *level.notes])
     if not level.is_sure and _is_scan(case, array):
         mesh = _without_debris(mesh, level.notes)
     surface, box = _framed(whole, mesh, boxed=level.boxed)
@@ -122,7 +131,6 @@ def isosurface(case: Case) -> Drawing:
         both = Step("", "pyvista.MultiBlock", [mesh, balls])
         frame = case.wishes.camera(both, eye_around(mesh.run()))
         surface = replace(surface, wishes=replace(surface.wishes, frame=frame))
-    second = None if case.wishes.question == "shape" else _second(case, mesh.run())
     figure = "value"
     if isinstance(level.at, tuple):
         words = f"±{levels.number(level.at[1])}"
@@ -152,7 +160,10 @@ def _level(case: Case, array: Named) -> _Level | str:
     volume = case.data
     if is_scan:
         # The edge of a mask would be a staircase of voxels.
-        volume = Step("smooth", ".gaussian_smooth", volume, std_dev=SMOOTH, scalars=array.name)
+        scan = Step("scan", ".copy", volume, deep=False)
+        # Without active scalars VTK's filter ends the process.
+        scan.attributes = {"active_scalars_name": array.name}
+        volume = Step("smooth", ".gaussian_smooth", scan, std_dev=SMOOTH, scalars=array.name)
     if is_auto and (size := _size_of_both_signs(values, volume, array)) is not None:
         if is_scan:
             volume = Step("closed", ".pad_image", volume, pad_value=0.0, scalars=array.name)
@@ -299,22 +310,95 @@ def _is_rough(case: Case, mesh: Step, camera: Step) -> bool:
 
 
 def slices(case: Case, why: str = "") -> Drawing:
-    """Draw three slices through the middle of a volume, in the colours of its values."""
+    """Draw a volume without the corner toward the eye, in the colours of its values."""
     array = case.needed_array
-    is_gray = _is_gray(case, array)
-    mesh = Step("slices", ".slice_orthogonal", case.data)
-    mesh = Step("joined", ".combine", mesh)
-    mesh = Step("slices", ".extract_surface", mesh, algorithm="dataset_surface")
-    box = Step("box", ".outline", mesh)
-    camera = case.camera(box, case.eye(mesh), boxed=True)
+    box = Step("box", ".outline", case.data)
+    eye = case.eye(case.data)
+    camera = case.camera(box, eye, boxed=True)
+    cut, outside = _parts_of_cut(case, case.data, eye)
+    drawing = _of_cut(case, cut, camera, case.data)
+    first, *strokes = drawing.layers
+    faces = replace(case, data=outside, contents=Contents(outside.run()))
+    layers = [first, Layer(outside, first.keywords), *strokes, *case.strokes([faces.creases])]
+    words = f"slices of {array.name} through the middle, around the corner toward the eye{why}"
+    return replace(drawing, layers=[*layers, *case.boxed(box, camera)], words=words)
+
+
+def _opened(case: Case, level: _Level) -> Drawing | None:
+    """Draw an isosurface without its corner toward the eye, in the colours of the values inside.
+
+    None where these are much the same.
+    """
+    array, wishes, at = case.needed_array, case.wishes, level.at
+    assert not isinstance(at, tuple)
+    eye = case.eye(level.volume)
+    cut, outside = _parts_of_cut(case, level.volume, eye, at)
+    if _is_even(cut.run(), level.volume.run(), array.name):
+        return None
+    sides = Contents(outside.run()).sides
+    boxed = level.boxed and max(sides) > LEAST_OF_BOX * max(case.contents.sides)
+    box = Step("box", ".outline", case.data)
+    camera = case.camera(box if boxed else outside, eye, boxed=boxed)
+    drawing = _of_cut(case, cut, camera, cut)
+    first, *strokes = drawing.layers
+    lit = replace(case, data=outside, contents=Contents(outside.run()), question="value")
+    light = wishes.light_of_surface()
+    lamp = {"scene": lit.exposed(outside, camera, "lamp", **light)} | wishes.drawn(light)
+    layers = [first, Layer(outside, first.keywords | lamp), *strokes]
+    (key,) = drawing.keys
+    _, unit = parted(str(key["title"]))
+    title = f"{key['title']}; surface: {levels.number(at)} {unit}".rstrip()
+    return replace(
+        drawing,
+        layers=[*layers, *(case.boxed(box, camera) if boxed else [])],
+        words=f"isosurface {array.name} = {levels.number(at)}, with the values inside",
+        keys=[key | {"title": title}],
+    )
+
+
+def _parts_of_cut(
+    case: Case, volume: Step, eye: Viewpoint, level: float | None = None
+) -> tuple[Step, Step]:
+    """Return the steps that take the faces of a cut toward an eye, and the outside around it."""
+    toward = _toward(case, volume, eye)
+    name = case.needed_array.name
+    parts = Step("parts", "files.without_corner", volume, name, level, toward=toward)
+    return Step("cut", "[]", parts, "cut"), Step("outside", "[]", parts, "outside")
+
+
+def _toward(case: Case, mesh: Step, eye: Viewpoint) -> tuple[float, ...]:
+    """Return the direction toward an eye on a mesh."""
+    camera = case.wishes.camera(mesh, eye).run()
+    way = np.subtract(camera.position, camera.focal_point) / camera.distance
+    return tuple(np.round(way, 3).tolist())
+
+
+def _of_cut(case: Case, cut: Step, camera: Step, valued: Step) -> Drawing:
+    """Return the drawing of the faces of a cut, in colours for the values of a mesh."""
+    array, is_gray = case.needed_array, _is_gray(case, case.needed_array)
     scene = case.wishes.scene("none", camera)
-    colors, note = case.ranged_of(case.data, array, "gray" if is_gray else LIGHTNESS, scan=is_gray)
-    shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
-    lit = case.lit(mesh, scene)
-    words = f"slices of {array.name} through the middle{why}"
-    layers = [Layer(mesh, shown), *case.boxed(box, camera)]
+    colors, note = case.ranged_of(valued, array, "gray" if is_gray else ON_SURFACES, scan=is_gray)
+    drawn = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
+    faces = replace(case, data=cut, contents=Contents(cut.run()))
+    layers = [Layer(cut, drawn), *case.strokes([faces.borders, faces.creases])]
+    lit = case.lit(cut, scene, **case.wishes.light_of_surface())
     notes = [note] if note else []
-    return Drawing(layers, camera, scene, lit, words, [case.bar(array, colors)], notes)
+    return Drawing(layers, camera, scene, lit, "", [case.bar(array, colors)], notes)
+
+
+def _is_even(cut: pv.DataSet, volume: pv.DataSet, name: str) -> bool:
+    """Return whether the values on the faces of a cut are much the same."""
+    if not cut.n_points:
+        return True
+    low, high = range_of(volume, name)
+    first, last = np.nanpercentile(np.asarray(cut[name], dtype=np.float64), MOST_OF_CUT)
+    return bool(last - first < LEAST_OF_CUT * (high - low))
+
+
+def _is_of_scanner(case: Case, array: Named) -> bool:
+    """Return whether a volume is a scan of a body or one in whole numbers, as scanners have."""
+    is_whole = case.data.run()[array.name].dtype.kind in "iu"
+    return _is_scan(case, array) and (is_whole or case.is_of_body)
 
 
 def _is_gray(case: Case, array: Named) -> bool:
@@ -339,9 +423,8 @@ def _cut_open(case: Case) -> Drawing | None:
     if not _is_scan(case, array) or not _is_gray(case, array):
         return None
     eye = Viewpoint(FACE, (0.0, 0.0, 1.0)) if case.is_of_body else ISOMETRIC
-    first = wishes.camera(case.data, eye).run()
-    toward = np.round(np.subtract(first.position, first.focal_point) / first.distance, 3)
-    parts = Step("parts", "files.cut_open", case.data, array.name, toward=tuple(toward.tolist()))
+    toward = _toward(case, case.data, eye)
+    parts = Step("parts", "files.cut_open", case.data, array.name, toward=toward)
     if not parts.run()["skin"].n_points:
         return None
     skin, cut = (Step(name, "[]", parts, name) for name in ("skin", "cut"))
