@@ -136,7 +136,7 @@ def summed(grid: Array) -> Array:
 
 def voxel_depths(
     middles: Array, vectors: Array, places: Array, frame: Array, discs: Array | None = None, /
-) -> tuple[Array, Array, Columns]:
+) -> tuple[Array, Array, VoxelColumns]:
     """Return the length of pieces, across a direction, on either side of places.
 
     Parameters
@@ -154,7 +154,7 @@ def voxel_depths(
     -------
     forth, back : ndarray of float32, shape (N,)
         Sums along the direction and against it.
-    columns : Columns
+    columns : VoxelColumns
         Voxels at the places.
     """
     # For so few rows a product of matrices takes twice as long.
@@ -174,7 +174,7 @@ def voxel_depths(
     # The sums of all stand in two layers, so that they are read like a grid.
     cells[2] = 0
     forth = read(np.stack([total, total], axis=2), cells) - back
-    return forth, back, Columns(cells[:2] - np.floor(cells[:2]), frame)
+    return forth, back, VoxelColumns(cells[:2] - np.floor(cells[:2]), frame)
 
 
 #: Places along half a line from -1 to 1, and weights, by which its own depth is summed.
@@ -213,7 +213,7 @@ def directions(count: int, /) -> Array:
     return np.stack([r * np.cos(GOLDEN * number), r * np.sin(GOLDEN * number), z], axis=1)
 
 
-class Columns(NamedTuple):
+class VoxelColumns(NamedTuple):
     """The voxels at points, which stand in columns toward a light.
 
     Attributes
@@ -291,12 +291,12 @@ class Targets(NamedTuple):
             None if self.halves is None else np.take(self.halves, order, axis=2),
         )
 
-    def own_depth(self, columns: Columns, thick: float = 0.0) -> Array | float:
+    def own_depth(self, columns: VoxelColumns, thick: float = 0.0) -> Array | float:
         """Return the depth per diameter that the line of a point adds at the point itself.
 
         Parameters
         ----------
-        columns : Columns
+        columns : VoxelColumns
             Voxels at the points.
         thick : float
             Diameter of the lines in voxels; 0 for lines without free ends.
@@ -328,7 +328,7 @@ class Targets(NamedTuple):
 
 
 def _parted(place: Array, x: Array, y: Array, along: Array, depth: Array) -> Array:
-    """Return the depth that is read at places of a piece there, before it and behind it, in rows.
+    """Return the depth read at places of a piece a step away, before it and behind it, in rows.
 
     Along the light it is that of a spread and a reading by hat functions in the mean over all
     places, the sum of a cubic B-spline.
@@ -340,7 +340,7 @@ def _parted(place: Array, x: Array, y: Array, along: Array, depth: Array) -> Arr
 
 
 def _met(place: Array, step: Array) -> Array:
-    """Return what is read at a place in a voxel of 1 that is spread a step from it."""
+    """Return the value read at a place in a voxel, of 1 that is spread a step from it."""
     at = place + step
     low, high = np.maximum(1 - np.abs(at), 0), np.maximum(1 - np.abs(at - 1), 0)
     depth: Array = (1 - place) * low + place * high
@@ -421,7 +421,7 @@ class Medium:
 
     def depths(
         self, places: Array, toward: VectorLike, thick: float = 0.0, /
-    ) -> tuple[Array, Array, Columns]:
+    ) -> tuple[Array, Array, VoxelColumns]:
         """Return the optical depth per diameter toward a direction and toward its opposite.
 
         Parameters
@@ -437,7 +437,7 @@ class Medium:
         -------
         forth, back : ndarray of float32, shape (N,)
             Depths, the point's own line included; diameters and depths are in voxels.
-        columns : Columns
+        columns : VoxelColumns
             Voxels at the places.
         """
         frame = _frame(toward).astype(np.float32)
@@ -718,7 +718,7 @@ NARROWEST = 1e-6
 def depths(
     middles: Array, vectors: Array, places: Array, lamp: VectorLike, thick: float = 0.0,
     discs: Array | None = None, /,
-) -> tuple[Array, Columns]:  # fmt: skip
+) -> tuple[Array, VoxelColumns]:  # fmt: skip
     """Return the optical depth per diameter between points and a light nearby.
 
     The grid has the light in its centre: on each of the six faces of a cube around it, voxels are
@@ -743,7 +743,7 @@ def depths(
     -------
     depth : ndarray of float32, shape (N,)
         Depths, the point's own line included.
-    columns : Columns
+    columns : VoxelColumns
         Voxels at the points.
     """
     centre = np.asarray(lamp, np.float64)[:, np.newaxis]
@@ -756,7 +756,7 @@ def depths(
     # A point at the light itself has no direction toward it, and nothing is divided by 0.
     axes[2] = -at / np.maximum(far, NARROWEST)
     if not gone.size:
-        return out, Columns(place, axes, area)
+        return out, VoxelColumns(place, axes, area)
     # Width of a cone at distance 1: it grows to a voxel at the median distance of the pieces, or at
     # 1 where that is less.
     width = 1 / max(float(np.median(gone)), 1.0)
@@ -793,7 +793,7 @@ def depths(
                     axes[row, axis, rows] = -side * seen[row] / height
                 # The area that a cone has across the light at the point, as for pieces below.
                 area[rows] = (width * height) ** 2 * height / np.maximum(far[rows], NARROWEST)
-    return out, Columns(place, axes, np.maximum(area, NARROWEST**2))
+    return out, VoxelColumns(place, axes, np.maximum(area, NARROWEST**2))
 
 
 def _in_pyramid(
