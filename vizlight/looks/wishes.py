@@ -39,7 +39,9 @@ STYLES = {"paper": "white", "dark": "#14161a"}
 #: Directions toward the eye that have a name.
 VIEWS: dict[str, Vector] = AXES | {
     "iso": (1.0, 1.0, 1.0), "isometric": (1.0, 1.0, 1.0),
-    "above": AXES["z"], "front": AXES["-y"],
+    "front": AXES["-y"], "back": AXES["y"], "left": AXES["-x"], "right": AXES["x"],
+    "side": AXES["x"], "top": AXES["z"], "above": AXES["z"], "bottom": AXES["-z"],
+    "below": AXES["-z"],
 }  # fmt: skip
 #: Azimuth and altitude of the sun of maps, in degrees: cartographers' north-west.
 SUN = (315.0, 30.0)
@@ -136,7 +138,7 @@ class Wishes:
         Options of the camera: up, parallel, zoom.
     picture : mapping
         Options of the picture: background, line_width, cmap, clim, scalars, key, map_parts,
-        backend.
+        backend, title; and of a movie: frames, fps.
     make_scene : callable, optional
         Function that returns the step of the scene.
     surface : bool
@@ -206,9 +208,26 @@ class Wishes:
         return (self.make_scene or plain_scene)("none given", view, camera, n)
 
     def camera(
-        self, mesh: object, eye: Viewpoint, *, axes: Sequence[str] = (), keyed: bool = True
+        self,
+        mesh: object,
+        eye: Viewpoint,
+        *,
+        axes: Sequence[str] = (),
+        key: float | None = KEY_SIZE,
     ) -> Step:
-        """Return the step that sets the camera on a mesh, with room for axes and for a key."""
+        """Return the step that sets the camera on a mesh, with room for axes and for a key.
+
+        Parameters
+        ----------
+        mesh : Step or sequence of paths
+            Step of the mesh.
+        eye : Viewpoint
+            From where it is seen, where no view was given.
+        axes : sequence of str
+            Names of axes along the edges of its box.
+        key : float or None
+            Width of the key as a share of the shorter side, 0 for a title alone, None for neither.
+        """
         up, zoom = self.eye.get("up"), self.eye.get("zoom", 1.0)
         fixed = self.frame or self.fixed_camera()
         if fixed is not None:
@@ -226,7 +245,7 @@ class Wishes:
             keywords["parallel"] = True
         if zoom != 1:
             keywords["zoom"] = zoom
-        width, height = self.room if keyed else self._room(0.0)
+        width, height = self._room(key)
         aspect = round(width / height, 4)
         step = Step("camera", "render.camera_on", mesh, toward, **keywords, aspect=aspect)
         if axes:
@@ -247,9 +266,9 @@ class Wishes:
         """Width and height of the place for data in the picture, in pixels."""
         return self._room(KEY_SIZE)
 
-    def _room(self, key: float) -> tuple[float, float]:
+    def _room(self, key: float | None) -> tuple[float, float]:
         share = (1.0, 1.0)
-        if self.picture.get("key", True):
+        if self.picture.get("key", True) and key is not None:
             share = data_share(self.size, key, lying=self.wide)
         return self.size[0] * share[0], self.size[1] * share[1]
 

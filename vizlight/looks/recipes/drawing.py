@@ -18,6 +18,7 @@ from pyvista.plotting.colors import get_cmap_safe
 from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on, parted
+from vizlight.draw.render import KEY_SIZE
 from vizlight.draw.ticks import numerals_of
 from vizlight.files import FORMATS
 from vizlight.looks import levels, map_parts, two_sides
@@ -212,6 +213,16 @@ class Drawing:
             if step.path != "render.box_axes":
                 kept.append(layer)
         return dataclasses.replace(self, layers=kept, camera=camera)
+
+    @property
+    def turning(self) -> Drawing:
+        """Drawing of a turn, which stays in the picture all around."""
+        drawing = self.of_turns
+        camera = drawing.camera
+        if camera.path == "render.camera_on":
+            keywords = {**camera.keywords, "turning": True}
+            camera = Step(camera.name, camera.path, *camera.arguments, **keywords)
+        return dataclasses.replace(drawing, camera=camera)
 
     def suffix(self) -> str:
         """Return the end of the name of a file that holds the lit mesh."""
@@ -425,7 +436,12 @@ class Case:
         elif self.box is not None:
             mesh, boxed = self.box, True
         axes = self.axes if boxed else ()
-        return self.wishes.camera(mesh, eye, axes=axes, keyed=not self.in_room)
+        key: float | None = KEY_SIZE
+        if self.in_room:
+            # A room needs no key, and a mesh of no file has no title.
+            key = 0.0 if self.is_isosurface or file_named(self.data) else None
+            key = 0.0 if self.wishes.picture.get("title") else key
+        return self.wishes.camera(mesh, eye, axes=axes, key=key)
 
     @cached_property
     def axes(self) -> Sequence[str]:
