@@ -380,7 +380,8 @@ def pixels(text: str) -> tuple[int, int]:
 HELP = frozenset({"--help", "-h"})
 app = App(
     name="vizlight",
-    help="Light that makes scientific data legible.",
+    help="Light that makes scientific data legible. vizlight FILE shows what is in a file.",
+    usage="Usage: vizlight FILE [OPTIONS]\n       vizlight COMMAND FILE [OPTIONS]",
     # Markdown takes longer to load than all of NumPy, and no text of the help has marks.
     help_format="plaintext",
     help_flags=sorted(HELP),
@@ -525,6 +526,11 @@ def takes(
 
 #: Functions that add the commands that are not in the app yet: options take time to find.
 _LATER: dict[str, Callable[[], None]] = {}
+
+
+def is_command(word: str) -> bool:
+    """Return whether a word is the name of a command."""
+    return word in _LATER or word in app
 
 
 def add_commands(word: str) -> None:
