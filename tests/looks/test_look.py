@@ -123,9 +123,10 @@ def test_hues_that_tell_normals_are_for_those_who_ask_for_them():
     across = lit["Normals"] @ np.cross(view.up, view.direction)
     left, right = (lit["rgb"][place(across)] for place in (np.argmin, np.argmax))
     assert lit.points[np.argmax(lit["rgb"].sum(axis=1)), 2] > 0.3
-    assert left[0] > left[2]
-    assert right[0] < right[2]
-    assert asked.figures().shape.median < 5 < look.figures().shape.median < 13
+    # Grey, so that no colour looks like data, and light from one side.
+    assert np.ptp(lit["rgb"], axis=1).max() < 0.05
+    assert left.mean() > 1.2 * right.mean()
+    assert asked.figures().shape.median < 5 < look.figures().shape.median < 30
 
 
 def globe(**options):

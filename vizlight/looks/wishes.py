@@ -17,7 +17,7 @@ from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
 from vizlight.mesh import georeference, height_grids, meaning, projections, records
 from vizlight.scene.material import Material
-from vizlight.scene.presets import AMBIENT, PRESETS
+from vizlight.scene.presets import PRESETS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -45,13 +45,14 @@ VIEWS: dict[str, Vector] = AXES | {
 }  # fmt: skip
 #: Azimuth and altitude of the sun of maps, in degrees: cartographers' north-west.
 SUN = (315.0, 30.0)
-#: Lamps of a room in the frame of the eye: cream from above, and fainter blue and brown. Of faint
-#: colours that an eye takes for light they leave small errors of the normals that it reads.
+#: Lamps of a room in the frame of the eye, and the light from all around: each side of a box has
+#: another tone, and none less than 0.4 of the lightest. Colours are too faint to look like data.
 ROOM: Sequence[Keywords] = (
-    {"direction": (-0.34, 1.0, 0.45), "color": (1.0, 0.98, 0.85), "intensity": 0.78},
-    {"direction": (0.73, 0.18, 1.0), "color": (0.5, 0.71, 1.0), "intensity": 0.33},
-    {"direction": (-0.45, -0.23, 1.0), "color": (1.0, 0.71, 0.55), "intensity": 0.33},
+    {"direction": (-0.35, 0.75, 0.55), "color": (1.0, 0.99, 0.96), "intensity": 0.55},
+    {"direction": (-0.9, -0.1, 0.45), "color": (0.96, 0.98, 1.0), "intensity": 0.25},
+    {"direction": (0.3, -0.1, 1.0), "color": (0.97, 0.99, 1.0), "intensity": 0.2},
 )
+AROUND = 0.45
 #: Degrees of longitude from which on a map is one of the whole earth.
 GLOBAL = 340.0
 #: Height of letters of numbers around a box, in those of keys.
@@ -96,7 +97,7 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
         return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
     if question == "room":
         lights = [Step("", "vizlight.Light", **lamp, follows_view=True) for lamp in ROOM]
-        material = Step("", "vizlight.Material", ambient=AMBIENT, diffuse=1 - AMBIENT)
+        material = Step("", "vizlight.Material", ambient=AROUND, diffuse=1.0)
         return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
     if question == "shadow":
         # A shadow is cast by one lamp, where the default of a scene has two.

@@ -55,7 +55,7 @@ OF_HEAT = {LIGHTNESS: "vizlight.heat", ON_SURFACES: "vizlight.heat"} | {
 DARK_MISSING = "#7a7a7a"
 #: Light of a room at the place that is as bright as white paper in other light: a surface without
 #: data stands out from paper.
-IN_ROOM = 0.8
+IN_ROOM = 0.75
 #: Least width of a line, in pixels, for each pixel of the width of a picture: 1.5 at 300 dpi where
 #: the picture is 85 mm wide.
 THIN = 1.5 / (85 / 25.4 * 300)
@@ -677,7 +677,8 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | 
     title = title or ("values" if meaning.is_of_reader(name) else name)
     if "," in name:
         title = _in_common(mesh, name.split(",")) or name
-    if title != name and title.isupper() and len(title) > LONGEST_SHORT:
+    is_word = title != name and not meaning.is_of_reader(name)
+    if is_word and title.isupper() and len(title) > LONGEST_SHORT:
         title = title.lower()
     unit = "" if unit == "1" else meaning.written(unit)
     if level is not None:
