@@ -268,7 +268,7 @@ class Color:
     array
         Array that the picture is about; it chooses the drawing. U,V joins components.
     scalars
-        Array that only colours what is drawn; or direction, for lines.
+        Array that only colours the drawing; or direction, for lines.
     cmap
         Name of the colour map.
     """

@@ -413,13 +413,13 @@ def look(
         rule in one picture; walls of a volume are left out.
     question : str, default: "auto"
         What the picture should tell: the name of a preset, such as ``"heading"`` or ``"shape"``,
-        ``"relief"`` or ``"flow"``. ``"auto"``: what suits the data.
+        ``"relief"`` or ``"flow"``. ``"auto"``: by the data.
     array : str, optional
         Array that is shown; of components their names, ``"u,v"``. Default: the best.
     view : str, vector or pyvista.Camera, optional
         Direction toward the eye: ``"front"``, ``"back"``, ``"left"``, ``"right"``, ``"top"``,
         ``"bottom"``, ``"iso"``, an axis such as ``"x"`` or ``"-y"``, three numbers, or a camera.
-        The front of a part is toward -y, its right toward x. Default: what suits the data.
+        The front of a part is toward -y, its right toward x. Default: by the data.
     size : (int, int), default: (1200, 800)
         Width and height of the picture in pixels.
     style : {"paper", "dark"}
@@ -428,10 +428,10 @@ def look(
         Further options. How files and data of xarray are read: ``time``, ``overlay``, ``at``,
         ``nodata``, as by :func:`vizlight.read`. Parts of the data: ``slice`` and ``clip`` (a plane,
         ``"z:4"`` or a normal and an origin), ``threshold`` (``"Temp:300:600"`` or a name and two
-        numbers), ``contour``, ``level`` (of an isosurface), ``warp``, ``exaggeration``, ``globe`` (a map of the whole
-        earth on a ball, a raised one with ``warp`` or ``exaggeration``). The light: ``scene``, and
-        options of :func:`vizlight.illuminate` or of the filter of the question, such as
-        ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
+        numbers), ``contour``, ``level`` (of an isosurface), ``warp``, ``exaggeration``, ``globe``
+        (a map of the whole earth on a ball, a raised one with ``warp`` or ``exaggeration``). The
+        light: ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the
+        question, such as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
         ``title`` (words above it), ``map_parts`` (those that are drawn of "coasts", "frame" and
         "isolines"; () for none), ``up``, ``parallel``, ``zoom``, ``backend``. A movie: ``frames``,
         ``fps``.
