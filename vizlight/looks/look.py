@@ -431,10 +431,10 @@ def look(
         numbers), ``contour``, ``level`` (of an isosurface), ``warp``, ``exaggeration``, ``globe``
         (a map of the whole earth on a ball, a raised one with ``warp`` or ``exaggeration``). The
         light: ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the
-        question, such as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
-        ``title`` (words above it), ``map_parts`` (those that are drawn of "coasts", "frame" and
-        "isolines"; () for none), ``up``, ``parallel``, ``zoom``, ``backend``. A movie: ``frames``,
-        ``fps``.
+        question, such as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``,
+        ``clim``, ``key``, ``title`` (words above it), ``map_parts`` (those that are drawn of
+        "coasts", "frame" and "isolines"; () for none), ``up``, ``parallel``, ``zoom``, ``backend``.
+        A movie: ``frames``, ``fps``.
 
     Returns
     -------
