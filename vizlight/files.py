@@ -121,6 +121,8 @@ _HARMLESS = re.compile(
     "bad X server connection|Could not locate key|Error reading InformationKey|Skipping BC_t node"
     "|glTF extension .* is used in|Unknown field: '[^:]*:="
 )
+#: Most files of a folder that an error names.
+MOST_NAMED = 8
 #: What VTK says of an OpenFOAM file that is whole, but in a language that it has only a part of.
 _DIRECTIVE = re.compile(r"Error reading line \d+ of (\S+): Unsupported directive (\w+)")
 #: Begin of the names of temporary folders, of those without a lock yet, and the time in seconds
@@ -422,10 +424,8 @@ def _check_there(path: Path, overlays: Sequence[Path]) -> None:
     """Check that a file and those over it exist and can be opened."""
     for name, checked in (("file", path), *(("overlay", checked) for checked in overlays)):
         if what := no_file(checked):
-            remedy = ""
-            if (checked / "constant").is_dir():
-                case = checked / f"{checked.resolve().name}.foam"
-                remedy = f"an OpenFOAM case is read by an empty file in it: touch '{case}'"
+            inside = _readable(checked) if checked.is_dir() else []
+            remedy = f"in it are {', '.join(inside)}" if inside else ""
             raise _wrong(name, "a file", f"'{checked}' ({what})", remedy)
     if not os.access(path, os.R_OK):
         raise _wrong("file", "a readable file", f"'{path}'")
@@ -436,12 +436,21 @@ def _check_there(path: Path, overlays: Sequence[Path]) -> None:
         raise _wrong("file", expected, ascii(str(path)), remedy)
 
 
+def _readable(folder: Path) -> list[str]:
+    """Return the first files of a folder that can be read, by their names, and their number."""
+    paths = [path for path in sorted(folder.iterdir()) if foreign_files.has_reader(path)]
+    names = [f"'{path}'" for path in paths[:MOST_NAMED]]
+    return names + [f"{len(paths) - MOST_NAMED} more"] * (len(paths) > MOST_NAMED)
+
+
 def no_file(path: Path) -> str:
     """Return why a path is no file that can be read, an empty text if it is one.
 
-    A store of Zarr is a folder.
+    A store of Zarr is a folder, and so is a case of OpenFOAM.
     """
     if path.is_file() or (path.is_dir() and path.suffix.lower() in cf_grids.ZARR):
+        return ""
+    if series.is_case(path):
         return ""
     return "a folder" if path.is_dir() else "a pipe or device" if path.exists() else "no such file"
 
@@ -630,7 +639,9 @@ def _found(
     nodata: float | None = None,
 ) -> pv.DataObject:
     """Return the data of the first reader that knows a file."""
-    contents: pv.DataObject | None = foreign_files.read(path, time, at=at, nodata=nodata)
+    contents: pv.DataObject | None = None
+    if not series.is_case(path):
+        contents = foreign_files.read(path, time, at=at, nodata=nodata)
     contents = series.read(path, time) if contents is None else contents
     contents = _by_package(path) if contents is None else contents
     if path.suffix.lower() in _MESHERS:

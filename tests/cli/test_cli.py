@@ -347,3 +347,20 @@ def test_legibility_is_printed_and_the_script_does_the_same(ball, capfd, done):
     table = capfd.readouterr().out.strip()
     assert table.startswith("question")
     assert table in out
+
+
+def test_a_folder_names_the_files_in_it_that_can_be_read(folder, refused):
+    (folder / "parts").mkdir()
+    for name in ("ball.stl", "scan.nii.gz", "notes.odt", *(f"step_{i}.vtu" for i in range(9))):
+        (folder / "parts" / name).touch()
+    err = refused("parts")
+    assert "expected a file, got 'parts' (a folder); in it are 'parts/ball.stl'" in err
+    assert "'parts/scan.nii.gz'" in err
+    assert "3 more" in err
+    assert "notes" not in err
+
+
+def test_the_help_begins_with_what_is_used_most(run):
+    code, out, _ = run("--help")
+    assert code == 0
+    assert out.startswith("Usage: vizlight FILE [OPTIONS]\n")

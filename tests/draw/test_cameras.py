@@ -124,3 +124,26 @@ def test_a_camera_copies_no_mesh():
         _, peak = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         assert peak < 2.5 * 65_536 * 10 * 8
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+@pytest.mark.parametrize(
+    ("direction", "up"), [((1, 1, 1), None), ((0.2, -1, -0.4), None), ((1, 0.3, 0.5), (0, 1, 0))]
+)
+def test_a_mesh_stays_in_the_picture_all_around(direction, up, parallel):
+    """Points are projected by hand from all azimuths: none is outside, and one is at the margin."""
+    points = np.random.default_rng(5).normal(size=(200, 3)) * (3, 1, 0.5) + (10, 20, 30)
+    aspect, shares = 1.5, []
+    camera = render.camera_on(
+        pv.PolyData(points), direction, up=up, parallel=parallel, aspect=aspect, turning=True
+    )
+    for _ in range(90):
+        way = unit(np.subtract(camera.focal_point, camera.position))
+        right = unit(np.cross(way, camera.up))
+        away = points - camera.position
+        half = camera.parallel_scale if parallel else np.tan(np.radians(15)) * (away @ way)
+        shares += [abs(away @ right) / (half * aspect), abs(away @ np.cross(right, way)) / half]
+        camera.Azimuth(4)
+    assert 0.93 < np.max(shares) < 0.96
+    middle = np.reshape(pv.PolyData(points).bounds, (3, 2)).mean(axis=1)
+    assert np.linalg.norm(np.cross(middle - camera.focal_point, camera.up)) < 1e-9

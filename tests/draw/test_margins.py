@@ -230,3 +230,12 @@ def test_pictures_have_keys():
     # The data have moved to the left of the plate, on which the key stands.
     assert (plain[:, wide + 2 :] == 0).all() or (plain != keyed).any()
     assert (keyed[:, wide + 2 :].astype(int).max(axis=2) > 100).sum() > 0.8 * np.pi * 22**2
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("CT_AVM = 64", "CT_AVM = 64"), ("P_XPM_0331", "P_XPM_0331"), ("air_temp", "Air temp"),
+     ("U_mean", "U mean"), ("_x_", "x")],
+)  # fmt: skip
+def test_names_in_capitals_are_as_they_are(name, words):
+    assert margins.written(name) == words

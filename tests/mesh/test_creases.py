@@ -54,6 +54,18 @@ def test_edges_that_connect_to_no_length_are_roughness():
     assert np.abs(edges.points[:, 0]).max() < 1e-6
 
 
+def test_small_holes_and_creases_between_points_stored_twice_are_drawn():
+    """A plate with a small hole: its rim, 24 edges, is much shorter than the plate."""
+    plate = pv.Disc(inner=0.02, outer=1.0, c_res=24, r_res=1).extrude((0, 0, 0.1), capping=True)
+    plate = plate.triangulate().clean()
+    edges = files.creases(plate)
+    assert edges.n_cells == 4 * 24
+    assert np.linalg.norm(edges.points[:, :2], axis=1).min() < 0.021
+    split = plate.compute_normals(feature_angle=30, split_vertices=True)
+    assert split.n_points > plate.n_points
+    assert files.creases(split).n_cells == 4 * 24
+
+
 def test_borders_are_those_of_holes_and_not_of_cracks():
     ball = pv.Sphere(theta_resolution=90, phi_resolution=90)
     assert not files.borders(ball).n_cells

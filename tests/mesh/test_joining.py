@@ -166,6 +166,12 @@ def test_reading_notes_once_what_was_filled(tmp_path):
     assert np.isnan(found["T"]).sum() == 64
 
 
+def test_places_in_textures_are_filled_without_a_note(tmp_path):
+    blocks = pv.MultiBlock({"fluid": volume(TEXCOORD_0=heat), "solid": volume(10)})
+    blocks.save(tmp_path / "b.vtm")
+    assert "TEXCOORD_0" in vizlight.read(tmp_path / "b.vtm").point_data
+
+
 def test_lines_stay_in_the_block_that_has_the_flow():
     flow = volume(U=lambda p: np.tile([1.0, 0, 0], (len(p), 1)))
     lines = vizlight.streamlines(pv.MultiBlock([flow, volume(10)]), SCENE, tangents="U", seeds=5)

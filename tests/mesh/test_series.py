@@ -7,7 +7,6 @@ import pyvista as pv
 from vtkmodules.vtkIOParallel import vtkEnSightWriter
 
 import vizlight
-from vizlight import files
 from vizlight.mesh import series
 
 
@@ -122,14 +121,18 @@ def test_a_case_in_parts_of_processors_is_read(case):
     assert vizlight.read(case).n_points == 125
 
 
+@pytest.mark.parametrize("marked", [True, False])
+def test_the_folder_of_a_case_is_read_as_its_file(marked, case):
+    expected = vizlight.read(case, time=0.5)
+    if not marked:
+        case.unlink()
+    assert vizlight.read(case.parent, time=0.5) == expected
+    assert vizlight.look(case.parent).drawing.words == vizlight.look(expected).drawing.words
+
+
 def test_a_directive_that_vtk_does_not_read_is_no_damage(tmp_path):
     case = foam.write(tmp_path / "case", [1], swirl, before='speed #calc "2*3";\n')
     with pytest.warns(UserWarning, match=r"fields that are left out.*U' \(#calc\).*-expand"):
         mesh = vizlight.read(case)
     assert mesh.n_points == 125
     assert "U" not in mesh.point_data
-
-
-def test_a_folder_of_a_case_is_told_what_to_type(case):
-    with pytest.raises(files.FileError, match=r"a folder\); .*touch '.*case/case.foam'"):
-        vizlight.read(case.parent)

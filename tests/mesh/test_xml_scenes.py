@@ -39,7 +39,7 @@ def test_faces_of_collada_are_where_their_nodes_put_them(up, corner, tmp_path):
     mesh = vizlight.read(path)
     assert (mesh.n_points, mesh.n_cells) == (4, 1)
     np.testing.assert_allclose(mesh.points[mesh.get_cell(0).point_ids[2]], corner, atol=1e-6)
-    assert meaning.line(mesh) == "x in inch, y, z"
+    assert meaning.line(mesh) == "x, y, z in inch"
 
 
 def test_the_triangles_of_a_strip_face_one_way(tmp_path):
@@ -97,6 +97,6 @@ def test_objects_of_3mf_are_where_their_transforms_put_them(tmp_path):
     places = sorted(map(tuple, np.round(mesh.points, 6).tolist()))
     assert places == [(0, 0, 0), (0, 1, 0), (1, 0, 0), (3, 0, 7), (5, 0, 7), (5, 2, 7)]
     assert mesh.n_cells == 2
-    assert meaning.line(mesh) == "x in inch, y, z"
+    assert meaning.line(mesh) == "x, y, z in inch"
     with pytest.raises(FileError, match=r"it names .*'9'.*, which it has not"):
         vizlight.read(written(tmp_path / "a.3mf", second="9"))

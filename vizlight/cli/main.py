@@ -56,8 +56,10 @@ def _with_command(words: list[str]) -> list[str]:
     if first == "hillshade":  # its name elsewhere
         words = ["relief", *words[1:]]
     path = Path(first)
+    is_path = path.suffix or (len(path.parts) > 1 and path.exists())
     # A name without a suffix may be that of a command.
-    if not first.startswith("-") and (path.suffix or (len(path.parts) > 1 and path.is_file())):
+    is_path = is_path or (path.is_dir() and first and not options.is_command(first))
+    if not first.startswith("-") and is_path:
         words = ["light", *words]
     options.add_commands(words[0] if words else "")
     return words

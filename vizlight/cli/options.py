@@ -190,7 +190,7 @@ class CameraOptions:
     Parameters
     ----------
     view
-        Direction x,y,z to the eye, iso, front, or a JSON file. Default: by the data.
+        Eye: front, back, left, right, top, bottom, iso; x,y,z; a JSON file.
     up
         Direction x,y,z that is up, or x, y or z. Default: z, or y seen along z.
     parallel
@@ -224,6 +224,12 @@ class Output:
         Colour behind the mesh. Default: that of the style.
     line_width
         Width of lines in pixels.
+    title
+        Words above the picture, in place of those of the data.
+    frames
+        Frames of a movie that turns. Default: 120.
+    fps
+        Frames, or steps of a series, per second of a movie.
     map_parts
         Parts of a map: coasts,frame,isolines or none. Default: by the data.
     backend
@@ -242,6 +248,9 @@ class Output:
     style: Literal["paper", "dark"] = "paper"
     background: str | None = None
     line_width: float = 1.0
+    title: Text | None = None
+    frames: int | None = None
+    fps: float | None = None
     map_parts: str | None = None
     backend: Backend | None = None
     report: Flag = False
@@ -257,9 +266,9 @@ class Color:
     Parameters
     ----------
     array
-        Array that is shown, by its contents: values, heights, vectors, or U,V for components.
+        Array that the picture is about; it chooses the drawing. U,V joins components.
     scalars
-        Array that colours the picture, times the light; or direction, for lines.
+        Array that only colours the drawing; or direction, for lines.
     cmap
         Name of the colour map.
     """
@@ -371,7 +380,8 @@ def pixels(text: str) -> tuple[int, int]:
 HELP = frozenset({"--help", "-h"})
 app = App(
     name="vizlight",
-    help="Light that makes scientific data legible.",
+    help="Light that makes scientific data legible. vizlight FILE shows what is in a file.",
+    usage="Usage: vizlight FILE [OPTIONS]\n       vizlight COMMAND FILE [OPTIONS]",
     # Markdown takes longer to load than all of NumPy, and no text of the help has marks.
     help_format="plaintext",
     help_flags=sorted(HELP),
@@ -516,6 +526,11 @@ def takes(
 
 #: Functions that add the commands that are not in the app yet: options take time to find.
 _LATER: dict[str, Callable[[], None]] = {}
+
+
+def is_command(word: str) -> bool:
+    """Return whether a word is the name of a command."""
+    return word in _LATER or word in app
 
 
 def add_commands(word: str) -> None:

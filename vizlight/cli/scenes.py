@@ -63,6 +63,9 @@ def wishes_of(
         key=None if lights.key else False,
         progress=out.progress or None,
         map_parts=out.map_parts,
+        title=out.title,
+        frames=out.frames,
+        fps=out.fps,
     )
     array = None
     if color is not None:
@@ -233,8 +236,11 @@ def _view_of(view: str | None, scene: Scene | None, seen: Keywords) -> object:
     if view in VIEWS:
         return view
     # In n-space the eye has n components.
-    toward = numbers(view, tuple(range(4, 100)))
-    return toward if any(toward) else options.vector("view", view)
+    toward = numbers(view, tuple(range(3, 100)))
+    if not any(toward):
+        expected = f"one of {', '.join(VIEWS)}, numbers x,y,z that are not all zero, or a JSON file"
+        raise value_error("--view", expected, repr(view))
+    return toward
 
 
 def _view_of_scene(scene: Scene, seen: Keywords) -> object:

@@ -21,6 +21,8 @@ Mesh: TypeAlias = pv.DataSet | pv.MultiBlock
 VIEW_ANGLE = 30.0
 #: Factor by which the picture is larger than the mesh in it.
 MARGIN = 1.05
+#: Number of directions in which the outermost points of a turn are sought, and of its steps.
+RINGS = 73
 #: Number of points that are projected at once.
 SOME = 1 << 16
 #: Least and largest size of a box that a camera shows; VTK's are no nearer than 1e-20.
@@ -64,6 +66,7 @@ def camera_on(
     parallel: bool = False,
     zoom: float = 1.0,
     aspect: float = 1.0,
+    turning: bool = False,
 ) -> pv.Camera:
     """Return a camera that shows a whole mesh or bounding box; OpenGL is not needed.
 
@@ -83,6 +86,9 @@ def camera_on(
         Magnification, above 0; 2 shows half the width.
     aspect : float, default: 1.0
         Width over height of the picture that a mesh fills.
+    turning : bool, default: False
+        Whether a mesh stays in the picture while the camera moves about its direction up, through
+        its focal point, which is on the axis through the middle of the box of the mesh.
 
     Returns
     -------
@@ -116,9 +122,17 @@ def camera_on(
     distance, height = radius / math.sin(math.radians(VIEW_ANGLE / 2)), radius
     if isinstance(bounds, Mesh):
         view = _axes(toward, upward), aspect
-        points = np.concatenate([_outermost(some, *view) for some in _coordinates(bounds)])
-        shift, distance, height = _fit(points - centre, *view, parallel=parallel)
-        centre = centre + shift
+        if _check.boolean("turning", turning):
+            rings = [_rings(some - centre, upward) for some in _coordinates(bounds)]
+            shift, distance, height = _fit(np.concatenate(rings), *view, parallel=parallel)
+            # The point on the axis that the same eye sees in the middle of the picture.
+            along = shift @ view[0][1] / (upward @ view[0][1])
+            distance -= along * float(upward @ toward)
+            centre = centre + along * upward
+        else:
+            points = np.concatenate([_outermost(some, *view) for some in _coordinates(bounds)])
+            shift, distance, height = _fit(points - centre, *view, parallel=parallel)
+            centre = centre + shift
     camera = pv.Camera()  # type: ignore[no-untyped-call]
     camera.view_angle = VIEW_ANGLE
     # A perspective picture grows with a nearer eye, a parallel one by its scale alone.
@@ -225,6 +239,33 @@ def _fit(
     # A single point, or a flat mesh that is seen edge on, has no extent in the picture.
     size = 0.05 * float(high[2] - low[2]) or (0.0 if height else 1.0)
     return shift @ axes, max(distance, float(high[2]) + size), max(height, size)
+
+
+def _rings(points: Array, up: Array) -> Array:
+    """Return the places of the outermost of some points in a turn about an axis.
+
+    Parameters
+    ----------
+    points : ndarray, shape (N, 3)
+        Points, in relation to a point of the axis.
+    up : ndarray, shape (3,)
+        Direction of the axis, of unit length.
+    """
+    points = points[np.all(np.isfinite(points), axis=1)]
+    if not len(points):
+        return points
+    heights = points @ up
+    radii = np.linalg.norm(points - heights[:, np.newaxis] * up, axis=1)
+    ways = np.linspace(0, np.pi, RINGS)
+    rows = np.stack([np.cos(ways), np.sin(ways)])
+    outer = np.unique(np.argmax(np.stack([heights, radii], axis=1) @ rows, axis=0))
+    right = np.cross(up, np.eye(3)[np.argmin(np.abs(up))])
+    right /= np.linalg.norm(right)
+    turns = np.linspace(0, 2 * np.pi, RINGS)[:, np.newaxis]
+    circle = np.cos(turns) * right + np.sin(turns) * np.cross(up, right)
+    places = heights[outer, np.newaxis, np.newaxis] * up
+    rings: Array = places + radii[outer, np.newaxis, np.newaxis] * circle
+    return rings.reshape(-1, 3)
 
 
 def _coordinates(mesh: Mesh) -> Iterator[Array]:

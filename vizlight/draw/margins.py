@@ -47,6 +47,8 @@ LIGHT_BACKGROUND = 1.2
 #: Titles of lengths of vectors, of which the first word stands above a bar, and letters of the
 #: longest name that does.
 LENGTHS, LONGEST = re.compile("(Speed|Length) of "), 12
+#: Name in capitals.
+CAPITALS = re.compile("[A-Z][A-Z0-9]*(_[A-Z0-9]+)+")
 #: Resolution in which VTK draws letters.
 _DPI = 72
 #: Share of the length of a bar from its end within which no number stands beside that of the end.
@@ -479,10 +481,19 @@ def data_share(
 
 
 def written(name: str) -> str:
-    """Return a name in words: without underscores, and with a capital where it is a word."""
+    """Return a name in words: without underscores, and with a capital where it is a word.
+
+    Parameters
+    ----------
+    name : str
+    """
     # Capitals within a name begin words, such as those of velocityField.
     apart = re.sub(r"(?<=[a-z]{2})(?=[A-Z][a-z]{2})", " ", name)
-    words = " ".join(apart.replace("_", " ").split())
+    # Names of files and data in capitals, such as CT_AVM, are as they are.
+    words = " ".join(
+        word if CAPITALS.fullmatch(word) else word.replace("_", " ").strip()
+        for word in apart.split()
+    )
     # Symbols such as dT or u,v are no words.
     is_word = re.match(r"[a-z]{3,}(?=[ ;,.]|$)", words)
     return words[:1].upper() + words[1:] if is_word else words

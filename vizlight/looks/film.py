@@ -300,6 +300,7 @@ def _settings(look: vizlight.Look, read: Step, times: Sequence[float]) -> Keywor
     wishes, drawing = look.wishes, look.drawing
     groups = {**wishes.part, **wishes.light, **wishes.eye, **wishes.picture}
     options: Keywords = {name: value for name, value in groups.items() if value is not None}
+    options.pop("frames", None)
     if not options.get("globe"):
         options.pop("globe", None)
     for name in ("view", "size", "style"):

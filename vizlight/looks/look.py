@@ -15,6 +15,7 @@ import pyvista as pv
 from vizlight import _check, files
 from vizlight._questions import QUESTIONS
 from vizlight._words import one_of, type_error, value_error
+from vizlight.draw.margins import parted
 from vizlight.draw.render import IMAGES, BackendError
 from vizlight.draw.vector import VECTORS
 from vizlight.looks import film, map_parts, together
@@ -55,6 +56,8 @@ FORMATS = (*IMAGES, *VECTORS, *PAGES, *MOVIES, *GLTF, *files.SUFFIXES)
 TOGETHER = (*PAGES, ".vtm")
 #: Figures of light.
 OF_LIGHT = ("slope", "heading", "shape")
+#: Frames of a turn, of 5 seconds, and options of the pace of movies.
+TURN_FRAMES, PACE = 120, ("frames", "fps")
 #: Most other questions that are listed.
 MOST_OTHERS = 5
 
@@ -216,10 +219,17 @@ class Look:
                 expected = "a picture or a page of a map on which nothing moves"
                 remedy = "name a file that ends in .png, .svg or .html"
                 raise value_error("path", expected, repr(str(path)), remedy)
-            shown = replace(self, drawing=moving or drawing.of_turns)
+            shown = replace(self, drawing=moving or drawing.turning)
             plotter, steps = shown._picture()
-            way = "movie.orbit" if moving is None else "movie.travel"
-            return [[*steps, Step("", way, plotter, path)]]
+            pace: Keywords = {name: self.wishes.picture.get(name) for name in PACE}
+            options = {name: value for name, value in pace.items() if value is not None}
+            way = "movie.travel"
+            if moving is None:
+                way, options = "movie.orbit", {"frames": TURN_FRAMES} | options
+                # Shading at each of the samples of a pixel takes twice the time.
+                step = Step("", ".enable_anti_aliasing", plotter, "msaa", multi_samples=8)
+                steps.append(step)
+            return [[*steps, Step("", way, plotter, path, **options)]]
         if suffix in (*IMAGES, *VECTORS):
             plotter, steps = self._picture()
             way = "render.save" if suffix in IMAGES else ".vizlight.save_graphic"
@@ -252,6 +262,8 @@ class Look:
         """Return the steps that write a page, for which no library needs to draw."""
         wishes, drawing = self.wishes, self.drawing.of_turns
         key: Keywords = {} if wishes.picture.get("key", True) else {"key": False}
+        if wishes.picture.get("title"):
+            key["title"] = wishes.picture["title"]
         if wishes.source:
             key["source"] = list(wishes.source)
         live = [self._with_bar(layer) for layer in drawing.layers if layer.live]
@@ -274,7 +286,7 @@ class Look:
 
     def _with_bar(self, layer: Layer) -> Layer:
         """Return a layer with the bar of its values, which a page draws in place of the key."""
-        values = [key for key in self.drawing.keys if key.get("question") == "value"]
+        values = [key for key in self._titled_keys if key.get("question") == "value"]
         clim = layer.keywords.get("clim")
         key = next((key for key in values if len(values) == 1 or key.get("clim") == clim), None)
         if key is None or layer.keywords.get("scalars") is None:
@@ -297,7 +309,7 @@ class Look:
     @property
     def _keys(self) -> list[Keywords]:
         """Keys and bars of the picture."""
-        keys, wishes = [dict(key) for key in self.drawing.keys], self.wishes
+        keys, wishes = self._titled_keys, self.wishes
         if not wishes.picture.get("key", True):
             return []
         if keys and not any(key.get("title") for key in keys):
@@ -313,6 +325,17 @@ class Look:
             for key, bar in zip(keys, is_bar, strict=True)
             if bar or not near
         ]
+
+    @property
+    def _titled_keys(self) -> list[Keywords]:
+        """Keys of the drawing; a title that was given replaces that of the first, but its unit."""
+        keys, title = [dict(key) for key in self.drawing.keys], self.wishes.picture.get("title")
+        if title is not None:
+            keys = keys or [dict(surfaces.TITLE_ALONE)] * bool(title)
+            for key in keys[:1]:
+                unit = parted(str(key.get("title", "")))[1]
+                key["title"] = f"{title} ({unit})" if unit and not parted(title)[1] else title
+        return keys
 
     def read_steps(self) -> list[Step]:
         """Return the steps that print how much a reader reads back from the picture."""
@@ -390,12 +413,13 @@ def look(
         rule in one picture; walls of a volume are left out.
     question : str, default: "auto"
         What the picture should tell: the name of a preset, such as ``"heading"`` or ``"shape"``,
-        ``"relief"`` or ``"flow"``. ``"auto"``: what suits the data.
+        ``"relief"`` or ``"flow"``. ``"auto"``: by the data.
     array : str, optional
         Array that is shown; of components their names, ``"u,v"``. Default: the best.
     view : str, vector or pyvista.Camera, optional
-        Direction toward the eye: a name such as ``"x"`` or ``"above"``, three numbers, or a camera.
-        Default: what suits the data.
+        Direction toward the eye: ``"front"``, ``"back"``, ``"left"``, ``"right"``, ``"top"``,
+        ``"bottom"``, ``"iso"``, an axis such as ``"x"`` or ``"-y"``, three numbers, or a camera.
+        The front of a part is toward -y, its right toward x. Default: by the data.
     size : (int, int), default: (1200, 800)
         Width and height of the picture in pixels.
     style : {"paper", "dark"}
@@ -408,8 +432,9 @@ def look(
         (a map of the whole earth on a ball, a raised one with ``warp`` or ``exaggeration``). The
         light: ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the
         question, such as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``,
-        ``clim``, ``key``, ``map_parts`` (those that are drawn of "coasts", "frame" and "isolines";
-        () for none), ``up``, ``parallel``, ``zoom``, ``backend``.
+        ``clim``, ``key``, ``title`` (words above it), ``map_parts`` (those that are drawn of
+        "coasts", "frame" and "isolines"; () for none), ``up``, ``parallel``, ``zoom``, ``backend``.
+        A movie: ``frames``, ``fps``.
 
     Returns
     -------

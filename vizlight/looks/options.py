@@ -20,7 +20,7 @@ from vizlight.filters.streamlines import vectors_by_default
 from vizlight.looks import cuts, map_parts
 from vizlight.looks.contents import Contents
 from vizlight.looks.steps import Step
-from vizlight.looks.wishes import STYLES, Wishes, scene_step
+from vizlight.looks.wishes import STYLES, Wishes, direction, scene_step
 from vizlight.mesh import charts, georeference, globes, height_grids, meaning, series
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
@@ -42,7 +42,7 @@ PART = (
 EYE = ("up", "parallel", "zoom")
 PICTURE = (
     "background", "line_width", "cmap", "clim", "scalars", "key", "map_parts", "backend",
-    "progress",
+    "progress", "title", "frames", "fps",
 )  # fmt: skip
 
 
@@ -94,6 +94,9 @@ CHECKS: dict[str, Callable[[str, Foreign], Foreign]] = {
     "map_parts": lambda _, parts: map_parts.named(parts),
     "backend": functools.partial(_check.text, expected="'egl' or 'osmesa'"),
     "progress": _check.boolean,
+    "title": functools.partial(_check.text, expected="the words above the picture"),
+    "frames": functools.partial(_check.integer, low=1),
+    "fps": functools.partial(_check.number, low=0.01, high=100.0),
 }
 
 
@@ -116,6 +119,8 @@ def sorted_out(
     _check.choice("style", style, tuple(STYLES))
     if array is not None:
         _check.text("array", array, expected="the name of an array")
+    if view is not None and not hasattr(view, "GetPosition"):
+        direction(view, n=None)
     columns, rows = render.pixels_of(size)
     light_names = {*inspect.signature(LightOptions).parameters}
     groups: dict[str, Keywords] = {"part": {}, "light": {}, "eye": {}, "picture": {}}

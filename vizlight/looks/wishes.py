@@ -17,7 +17,7 @@ from vizlight.draw.render import KEY_SIZE
 from vizlight.looks.steps import Step
 from vizlight.mesh import georeference, height_grids, meaning, projections, records
 from vizlight.scene.material import Material
-from vizlight.scene.presets import AMBIENT, PRESETS
+from vizlight.scene.presets import PRESETS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -39,17 +39,20 @@ STYLES = {"paper": "white", "dark": "#14161a"}
 #: Directions toward the eye that have a name.
 VIEWS: dict[str, Vector] = AXES | {
     "iso": (1.0, 1.0, 1.0), "isometric": (1.0, 1.0, 1.0),
-    "above": AXES["z"], "front": AXES["-y"],
+    "front": AXES["-y"], "back": AXES["y"], "left": AXES["-x"], "right": AXES["x"],
+    "side": AXES["x"], "top": AXES["z"], "above": AXES["z"], "bottom": AXES["-z"],
+    "below": AXES["-z"],
 }  # fmt: skip
 #: Azimuth and altitude of the sun of maps, in degrees: cartographers' north-west.
 SUN = (315.0, 30.0)
-#: Lamps of a room in the frame of the eye: cream from above, and fainter blue and brown. Of faint
-#: colours that an eye takes for light they leave small errors of the normals that it reads.
+#: Lamps of a room in the frame of the eye, and the light from all around: each side of a box has
+#: another tone, and none less than 0.4 of the lightest. Colours are too faint to look like data.
 ROOM: Sequence[Keywords] = (
-    {"direction": (-0.34, 1.0, 0.45), "color": (1.0, 0.98, 0.85), "intensity": 0.78},
-    {"direction": (0.73, 0.18, 1.0), "color": (0.5, 0.71, 1.0), "intensity": 0.33},
-    {"direction": (-0.45, -0.23, 1.0), "color": (1.0, 0.71, 0.55), "intensity": 0.33},
+    {"direction": (-0.35, 0.75, 0.55), "color": (1.0, 0.99, 0.96), "intensity": 0.55},
+    {"direction": (-0.9, -0.1, 0.45), "color": (0.96, 0.98, 1.0), "intensity": 0.25},
+    {"direction": (0.3, -0.1, 1.0), "color": (0.97, 0.99, 1.0), "intensity": 0.2},
 )
+AROUND = 0.45
 #: Degrees of longitude from which on a map is one of the whole earth.
 GLOBAL = 340.0
 #: Height of letters of numbers around a box, in those of keys.
@@ -94,7 +97,7 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
         return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
     if question == "room":
         lights = [Step("", "vizlight.Light", **lamp, follows_view=True) for lamp in ROOM]
-        material = Step("", "vizlight.Material", ambient=AMBIENT, diffuse=1 - AMBIENT)
+        material = Step("", "vizlight.Material", ambient=AROUND, diffuse=1.0)
         return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
     if question == "shadow":
         # A shadow is cast by one lamp, where the default of a scene has two.
@@ -136,7 +139,7 @@ class Wishes:
         Options of the camera: up, parallel, zoom.
     picture : mapping
         Options of the picture: background, line_width, cmap, clim, scalars, key, map_parts,
-        backend.
+        backend, title; and of a movie: frames, fps.
     make_scene : callable, optional
         Function that returns the step of the scene.
     surface : bool
@@ -206,9 +209,26 @@ class Wishes:
         return (self.make_scene or plain_scene)("none given", view, camera, n)
 
     def camera(
-        self, mesh: object, eye: Viewpoint, *, axes: Sequence[str] = (), keyed: bool = True
+        self,
+        mesh: object,
+        eye: Viewpoint,
+        *,
+        axes: Sequence[str] = (),
+        key: float | None = KEY_SIZE,
     ) -> Step:
-        """Return the step that sets the camera on a mesh, with room for axes and for a key."""
+        """Return the step that sets the camera on a mesh, with room for axes and for a key.
+
+        Parameters
+        ----------
+        mesh : Step or sequence of paths
+            Step of the mesh.
+        eye : Viewpoint
+            From where it is seen, where no view was given.
+        axes : sequence of str
+            Names of axes along the edges of its box.
+        key : float or None
+            Width of the key as a share of the shorter side, 0 for a title alone, None for neither.
+        """
         up, zoom = self.eye.get("up"), self.eye.get("zoom", 1.0)
         fixed = self.frame or self.fixed_camera()
         if fixed is not None:
@@ -226,7 +246,7 @@ class Wishes:
             keywords["parallel"] = True
         if zoom != 1:
             keywords["zoom"] = zoom
-        width, height = self.room if keyed else self._room(0.0)
+        width, height = self._room(key)
         aspect = round(width / height, 4)
         step = Step("camera", "render.camera_on", mesh, toward, **keywords, aspect=aspect)
         if axes:
@@ -247,9 +267,9 @@ class Wishes:
         """Width and height of the place for data in the picture, in pixels."""
         return self._room(KEY_SIZE)
 
-    def _room(self, key: float) -> tuple[float, float]:
+    def _room(self, key: float | None) -> tuple[float, float]:
         share = (1.0, 1.0)
-        if self.picture.get("key", True):
+        if self.picture.get("key", True) and key is not None:
             share = data_share(self.size, key, lying=self.wide)
         return self.size[0] * share[0], self.size[1] * share[1]
 

@@ -7,13 +7,17 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._types import Indices
+from vizlight.mesh import blocks
 from vizlight.vtk.cells import check_whole, connectivity
 from vizlight.vtk.corners import SHARP, sharp_edges
 from vizlight.vtk.memory import once
 from vizlight.vtk.normals import creases as share_of_creases
+from vizlight.vtk.topology import place_numbers
 
 #: Size of connected edges, as a share of that of the surface, below which they are roughness.
 SHORT = 0.1
+#: Number of connected edges without a loose end from which they are no roughness.
+LOOP = 12
 #: The same of borders, below which they are cracks.
 CRACK = 0.03
 #: Largest number of borders as a share of that of the cells, and distance of places that are one,
@@ -33,8 +37,9 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
     -------
     pyvista.PolyData
         Edges between faces that turn by more than 30 degrees, where those that connect have at
-        least 0.1 of the size of the surface, the diagonal of its box; without cells where it is
-        smooth, or so rough that no edges stand out.
+        least 0.1 of the size of the surface, the diagonal of its box, or are at least 12 without a
+        loose end, as around a hole or a letter; without cells where it is smooth, or so rough that
+        no edges stand out.
 
     Raises
     ------
@@ -57,14 +62,22 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
 
 
 def _creases(surface: pv.PolyData, *, carried: bool) -> pv.PolyData:
+    ids, ends = connectivity(surface.GetPolys())
+    _, first, same = np.unique(
+        place_numbers(surface.points), return_index=True, return_inverse=True
+    )
+    if len(first) < surface.n_points:
+        # Files with normals store a point once for each side of a crease.
+        ids = same[ids]
+        faces = blocks.cell_array(ids, ends)
+        surface = pv.PolyData(np.asarray(surface.points)[first], faces=faces)
     if not share_of_creases(surface, has_normals=carried):
         return pv.PolyData()
-    ids, ends = connectivity(surface.GetPolys())
     pairs = sharp_edges(surface.points, ids, ends, SHARP)
     if not len(pairs):
         return pv.PolyData()
     edges = pv.PolyData(surface.points, lines=np.insert(pairs, 0, 2, axis=1).ravel())
-    return _long(edges, SHORT * surface.length)
+    return _long(edges, SHORT * surface.length, loops=True)
 
 
 def borders(surface: pv.PolyData, /) -> pv.PolyData:
@@ -113,8 +126,8 @@ def _check_surface(surface: object) -> None:
     check_whole(surface, "surface")
 
 
-def _long(edges: pv.PolyData, least: float) -> pv.PolyData:
-    """Return the edges of a mesh where those that connect have a least size."""
+def _long(edges: pv.PolyData, least: float, *, loops: bool = False) -> pv.PolyData:
+    """Return the edges of a mesh where those that connect have a least size, or are loops."""
     edges = edges.clean().connectivity("all")
     part: Indices = np.asarray(edges.point_data["RegionId"])
     low, high = np.full((2, part.max() + 1, 3), [[[np.inf]], [[-np.inf]]])
@@ -122,6 +135,10 @@ def _long(edges: pv.PolyData, least: float) -> pv.PolyData:
     np.maximum.at(high, part, edges.points)
     long = np.linalg.norm(high - low, axis=1) >= least
     ends = edges.lines.reshape(-1, 3)[:, 1:]
+    if loops:
+        count = np.bincount(part[ends[:, 0]], minlength=len(long))
+        loose = part[np.bincount(ends.ravel(), minlength=edges.n_points) < 2]
+        long |= (count >= LOOP) & (np.bincount(loose, minlength=len(long)) == 0)
     ends = ends[long[part[ends[:, 0]]]]
     lines = np.insert(ends, 0, 2, axis=1)
     kept: pv.PolyData = pv.PolyData(edges.points, lines=lines.ravel()).clean()

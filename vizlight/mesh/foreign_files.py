@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pyvista as pv
+from pyvista.core.utilities.reader import CLASS_READERS
 from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
 
 from vizlight import _check, _supervise
@@ -104,6 +105,14 @@ def way_out(path: Path) -> str:
     if PACKAGES.get(path.suffix.lower(), ("",))[0] not in ("meshio", "h5py"):
         return missing(path)
     return missing(path) or "save it as .vtu, .vtk or .stl by the program that wrote it"
+
+
+def has_reader(path: Path) -> bool:
+    """Return whether a file can be read by the end of its name."""
+    # Packed files have their kind before the suffix of the packer.
+    suffixes = {suffix.lower() for suffix in path.suffixes[-2:]}
+    is_known = not suffixes.isdisjoint({*CLASS_READERS, *PACKAGES, *_BY_SUFFIX})
+    return is_known and path.is_file()
 
 
 def read(

@@ -18,6 +18,8 @@ from vizlight.vtk.hull import cell_types, dimension
 
 #: Value of a colour of bytes where a dataset has none, mid grey.
 GREY = 128
+#: Beginning of the names of places in textures.
+TEXTURES = "TEXCOORD_"
 #: Number of names that a note lists.
 LISTED = 6
 
@@ -227,7 +229,8 @@ def _attach(
         if fits is None and count:
             kept = found.filled if part is None else found.apart
             kept.setdefault(name, []).append(path.lstrip("/") or "mesh")
-    if name == GHOSTS:
+    # Places in textures show nothing here, which draws none.
+    if name == GHOSTS or name.startswith(TEXTURES):
         found.filled.pop(name, None)
     whole = all(part is not None or not n for part, n in zip(fitting, counts, strict=True))
     kind, gap = _filling(name, [part.dtype for part in present], form, whole=whole)

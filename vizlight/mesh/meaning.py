@@ -239,7 +239,10 @@ def line(mesh: pv.DataSet) -> str:
     mesh : pyvista.DataSet
     """
     meaning = of(mesh)
-    return ", ".join((*meaning.axes, *meaning.notes))
+    axes = meaning.axes
+    if axes[1:] == ["y", "z"] and axes[0].startswith("x in "):
+        axes = [f"x, y, z{axes[0][1:]}"]
+    return ", ".join((*axes, *meaning.notes))
 
 
 #: Parts of standard names by which components of one vector differ.

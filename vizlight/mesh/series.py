@@ -249,6 +249,18 @@ def note(mesh: pv.DataSet) -> str:
     return f"{last}; --time takes another, --times all of them one by one"
 
 
+def is_case(folder: Path) -> bool:
+    """Return whether a path is the folder of an OpenFOAM case.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Folder with ``constant``, and ``system``, a time ``0``, a mesh, or pieces of a parallel run.
+    """
+    places = ("system", "0", "constant/polyMesh", "processor0")
+    return (folder / "constant").is_dir() and any((folder / place).is_dir() for place in places)
+
+
 def reader_of(path: Path) -> Foreign:
     """Return PyVista's reader of a file, None where meshio or another package reads it.
 
@@ -258,15 +270,18 @@ def reader_of(path: Path) -> Foreign:
     """
     # A .foam file is empty and marks the folder of a case. A case that ran in parallel has its mesh
     # in processor0, processor1 and so on, until its parts are put together.
-    case = path.parent
-    whole = (case / "constant" / "polyMesh").is_dir()
-    if path.suffix.lower() == ".foam" and not whole and (case / "processor0").is_dir():
-        # PyVista's reader looks for the whole first, and reports that it is missing.
+    has_mark = path.suffix.lower() == ".foam"
+    case = path.parent if has_mark else path
+    is_whole = (case / "constant" / "polyMesh").is_dir()
+    in_parts = not is_whole and (case / "processor0").is_dir()
+    if is_case(path) or (has_mark and in_parts):
+        # PyVista's reader needs the mark, and reports that the whole is missing.
         from vtkmodules.vtkIOParallel import vtkPOpenFOAMReader
 
-        decomposed = vtkPOpenFOAMReader()
-        decomposed.SetCaseType(vtkPOpenFOAMReader.DECOMPOSED_CASE)
-        return _OfVtk(decomposed, path)
+        kind = vtkPOpenFOAMReader
+        reader_of_case = kind()
+        reader_of_case.SetCaseType(kind.DECOMPOSED_CASE if in_parts else kind.RECONSTRUCTED_CASE)
+        return _OfVtk(reader_of_case, case / "case.foam")
     try:
         reader: Foreign = pv.get_reader(path)  # type: ignore[no-untyped-call]
     except ValueError:

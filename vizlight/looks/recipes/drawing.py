@@ -18,6 +18,7 @@ from pyvista.plotting.colors import get_cmap_safe
 from vizlight._words import message, one_of
 from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on, parted
+from vizlight.draw.render import KEY_SIZE
 from vizlight.draw.ticks import numerals_of
 from vizlight.files import FORMATS
 from vizlight.looks import levels, map_parts, two_sides
@@ -54,7 +55,7 @@ OF_HEAT = {LIGHTNESS: "vizlight.heat", ON_SURFACES: "vizlight.heat"} | {
 DARK_MISSING = "#7a7a7a"
 #: Light of a room at the place that is as bright as white paper in other light: a surface without
 #: data stands out from paper.
-IN_ROOM = 0.8
+IN_ROOM = 0.75
 #: Least width of a line, in pixels, for each pixel of the width of a picture: 1.5 at 300 dpi where
 #: the picture is 85 mm wide.
 THIN = 1.5 / (85 / 25.4 * 300)
@@ -212,6 +213,16 @@ class Drawing:
             if step.path != "render.box_axes":
                 kept.append(layer)
         return dataclasses.replace(self, layers=kept, camera=camera)
+
+    @property
+    def turning(self) -> Drawing:
+        """Drawing of a turn, which stays in the picture all around."""
+        drawing = self.of_turns
+        camera = drawing.camera
+        if camera.path == "render.camera_on":
+            keywords = {**camera.keywords, "turning": True}
+            camera = Step(camera.name, camera.path, *camera.arguments, **keywords)
+        return dataclasses.replace(drawing, camera=camera)
 
     def suffix(self) -> str:
         """Return the end of the name of a file that holds the lit mesh."""
@@ -425,7 +436,12 @@ class Case:
         elif self.box is not None:
             mesh, boxed = self.box, True
         axes = self.axes if boxed else ()
-        return self.wishes.camera(mesh, eye, axes=axes, keyed=not self.in_room)
+        key: float | None = KEY_SIZE
+        if self.in_room:
+            # A room needs no key, and a mesh of no file has no title.
+            key = 0.0 if self.is_isosurface or file_named(self.data) else None
+            key = 0.0 if self.wishes.picture.get("title") else key
+        return self.wishes.camera(mesh, eye, axes=axes, key=key)
 
     @cached_property
     def axes(self) -> Sequence[str]:
@@ -661,7 +677,8 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | 
     title = title or ("values" if meaning.is_of_reader(name) else name)
     if "," in name:
         title = _in_common(mesh, name.split(",")) or name
-    if title != name and title.isupper() and len(title) > LONGEST_SHORT:
+    is_word = title != name and not meaning.is_of_reader(name)
+    if is_word and title.isupper() and len(title) > LONGEST_SHORT:
         title = title.lower()
     unit = "" if unit == "1" else meaning.written(unit)
     if level is not None:
