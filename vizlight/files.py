@@ -149,9 +149,9 @@ def read(
     """Read a mesh from a file; one that is damaged does not end this process.
 
     These are files that PyVista reads, tractograms, rasters, netCDF grids, molecules and crystals
-    (.pdb, .cif, .xyz), maps of densities (.mrc, .ccp4), fields of OpenDX (.dx), point clouds
-    (.las, .pcd), and tables (.csv) of points that name columns of places in their first line: x,
-    y, z or lon, lat.
+    (.pdb, .cif, .pdbx, .xyz, dumps of LAMMPS), maps of densities (.mrc, .ccp4), fields of OpenDX
+    (.dx), point clouds (.las, .pcd), and tables (.csv) of points that name columns of places in
+    their first line: x, y, z or lon, lat.
 
     Parameters
     ----------
@@ -700,6 +700,8 @@ _WAYS: dict[tuple[str, ...], str] = {
     (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",
     (".step", ".stp", ".iges", ".igs", ".brep"):
         "gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{name}' -o '{stem}.stl'",
+    (".dcd", ".trr", ".xtc", ".psf", ".prmtop", ".tpr", ".pdbqt", ".mmtf", ".bcif"):
+        "write a state of the molecule as .pdb, .cif or .xyz, for example by MDAnalysis or VMD",
     (".blend", ".fbx", ".ifc", ".x3d"):
         "Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'",
 }  # fmt: skip

@@ -321,6 +321,18 @@ def test_a_molecule_of_long_chains_shows_its_backbone(tmp_path):
     assert key["levels"] == [4, 10, 20, 30, 40, 50, 60, 64]
 
 
+def test_many_atoms_without_bonds_are_balls_with_light(tmp_path):
+    x, y, z = (9.0 * axis.ravel() for axis in np.mgrid[:11, :11, :11])
+    lines = [f"Ar {a} {b} {c}" for a, b, c in zip(x, y, z, strict=True)]
+    path = tmp_path / "gas.xyz"
+    path.write_text("\n".join([str(len(lines)), "", *lines]) + "\n")
+    look = vizlight.look(path, size=SIZE)
+    assert (look.shown, look.array) == ("molecule", "atom_type")
+    # Half of the radius of argon, 1.88 angstroms.
+    np.testing.assert_allclose(np.reshape(look.mesh.bounds, (3, 2))[:, 0], -0.94, atol=0.06)
+    assert not any(layer.keywords.get("lighting") is False for layer in look.drawing.layers)
+
+
 def test_ligands_are_balls_and_sticks_beside_the_chains(tmp_path):
     row = "{:6}{:5d} {:4} {:3} A{:4d}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00          {:>2}  "
     rows = [

@@ -59,6 +59,8 @@ ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
 #: Most atoms of a molecule that are balls, their size in radii of van der Waals, and the sticks
 #: between them, in angstroms.
 MOST_BALLS, BALL, STICK = 1000, 0.2, {"radius": 0.1, "n_sides": 20}
+#: Most atoms without bonds that are balls, and the size of these, which touch each other.
+MOST_ALONE, BALL_ALONE = 20_000, 0.5
 #: Size of atoms and sticks beside the chains of a large molecule, in that of others.
 BESIDE_CHAINS = 1.5
 #: Share of a bar of residues that is free between the number at an end and the next.
@@ -135,10 +137,12 @@ def _somas(case: Case) -> list[Layer]:
 
 
 def is_molecule(mesh: pv.DataSet) -> bool:
-    """Return whether a mesh is a molecule, with few enough atoms for balls and sticks."""
+    """Return whether a mesh is a molecule, with few enough atoms for balls, and sticks if any."""
     arrays = mesh.point_data
     is_one = isinstance(mesh, pv.PolyData) and {"atom_type", "radius"} <= set(arrays)
-    return is_one and mesh.n_points <= MOST_BALLS and np.ndim(arrays["radius"]) == 1
+    if not is_one or np.ndim(arrays["radius"]) != 1:
+        return False
+    return mesh.n_points <= (MOST_BALLS if mesh.n_lines else MOST_ALONE)
 
 
 def molecule(case: Case, size: float = 1.0) -> Drawing:
@@ -153,13 +157,15 @@ def molecule(case: Case, size: float = 1.0) -> Drawing:
     bonds = atoms
     if array.role == "kinds":
         bonds = Step("halves", "files.surface_of", atoms, labels=array.name)
-    finer = FINER if atoms.run().n_points <= FEW_BALLS else 1
-    fine = {"theta_resolution": 24 * finer, "phi_resolution": 16 * finer}
+    count, has_bonds = atoms.run().n_points, bool(atoms.run().n_lines)
+    finer = FINER if count <= FEW_BALLS else 1
+    corners = (24 * finer, 16 * finer) if count <= MOST_BALLS else (12, 8)
+    fine = {"theta_resolution": corners[0], "phi_resolution": corners[1]}
     ball = Step("", "pyvista.Sphere", radius=1, **fine)
-    factor = BALL * size
+    factor = BALL * size if has_bonds or size != 1 else BALL_ALONE
     balls = Step("balls", ".glyph", atoms, orient=False, scale="radius", factor=factor, geom=ball)
     solid = balls
-    if atoms.run().n_lines:
+    if has_bonds:
         stick = {"radius": STICK["radius"] * size, "n_sides": STICK["n_sides"] * finer}
         solid = Step("molecule", ".append_polydata", balls, Step("", ".tube", bonds, **stick))
     wishes = case.wishes
