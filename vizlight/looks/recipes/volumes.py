@@ -112,6 +112,12 @@ def isosurface(case: Case) -> Drawing:
         mesh = Step("outward", ".compute_normals", mesh, **OUTWARD)
     if not level.is_sure and _is_crumbs(mesh.run()):
         return _cut_open(case) or slices(case, "; isosurfaces are crumbs")
+    second = None if case.wishes.question == "shape" else _second(case, mesh.run())
+    is_free = not level.is_sure and not has_molecule and not isinstance(level.at, tuple)
+    if second is None and is_free and not _is_of_scanner(case, array):
+        opened = _opened(case, level)
+        if opened is not None:
+            return replace(opened, notes=[*opened.notes, *level.notes])
     if not level.is_sure and _is_scan(case, array):
         mesh = _without_debris(mesh, level.notes)
     surface, box = _framed(whole, mesh, boxed=level.boxed)
@@ -125,14 +131,6 @@ def isosurface(case: Case) -> Drawing:
         both = Step("", "pyvista.MultiBlock", [mesh, balls])
         frame = case.wishes.camera(both, eye_around(mesh.run()))
         surface = replace(surface, wishes=replace(surface.wishes, frame=frame))
-    second = None if case.wishes.question == "shape" else _second(case, mesh.run())
-    if (
-        second is None and not isinstance(level.at, tuple) and not level.is_sure
-        and not has_molecule and not _is_of_scanner(case, array)
-    ):  # fmt: skip
-        opened = _opened(case, level.at, level.volume, boxed=level.boxed)
-        if opened is not None:
-            return replace(opened, notes=[*opened.notes, *level.notes])
     figure = "value"
     if isinstance(level.at, tuple):
         words = f"±{levels.number(level.at[1])}"
@@ -320,18 +318,19 @@ def slices(case: Case, why: str = "") -> Drawing:
     return replace(drawing, layers=[*layers, *case.boxed(box, camera)], words=words)
 
 
-def _opened(case: Case, level: float, volume: Step, *, boxed: bool) -> Drawing | None:
+def _opened(case: Case, level: _Level) -> Drawing | None:
     """Draw an isosurface without its corner toward the eye, in the colours of the values inside.
 
     None where these are much the same.
     """
-    array, wishes = case.needed_array, case.wishes
-    eye = case.eye(volume)
-    cut, outside = _parts_of_cut(case, volume, eye, level)
-    if _is_even(cut.run(), volume.run(), array.name):
+    array, wishes, at = case.needed_array, case.wishes, level.at
+    assert not isinstance(at, tuple)
+    eye = case.eye(level.volume)
+    cut, outside = _parts_of_cut(case, level.volume, eye, at)
+    if _is_even(cut.run(), level.volume.run(), array.name):
         return None
     sides = Contents(outside.run()).sides
-    boxed = boxed and max(sides) > LEAST_OF_BOX * max(case.contents.sides)
+    boxed = level.boxed and max(sides) > LEAST_OF_BOX * max(case.contents.sides)
     box = Step("box", ".outline", case.data)
     camera = case.camera(box if boxed else outside, eye, boxed=boxed)
     drawing = _of_cut(case, cut, camera, cut)
@@ -342,11 +341,11 @@ def _opened(case: Case, level: float, volume: Step, *, boxed: bool) -> Drawing |
     layers = [first, Layer(outside, first.keywords | lamp), *strokes]
     (key,) = drawing.keys
     _, unit = parted(str(key["title"]))
-    title = f"{key['title']}; surface: {levels.number(level)} {unit}".rstrip()
+    title = f"{key['title']}; surface: {levels.number(at)} {unit}".rstrip()
     return replace(
         drawing,
         layers=[*layers, *(case.boxed(box, camera) if boxed else [])],
-        words=f"isosurface {array.name} = {levels.number(level)}, with the values inside",
+        words=f"isosurface {array.name} = {levels.number(at)}, with the values inside",
         keys=[key | {"title": title}],
     )
 
