@@ -38,6 +38,7 @@ from vizlight.mesh import (
     legacy_vtk,
     meaning,
     normals,
+    other_formats,
     references,
     series,
     short_files,
@@ -686,40 +687,12 @@ def _damaged(path: Path, reason: str) -> FileError:
     return _wrong("file", "a file that is not damaged", got, remedy)
 
 
-#: Ways to files of other formats, by the ends of their names.
-_WAYS: dict[tuple[str, ...], str] = {
-    (*_UNPACK, ".zip"): "unpack it first",
-    (".pqr", ".fchk", ".molden"):
-        "Open Babel makes a .pdb of it: obabel '{name}' -O '{stem}.pdb'",
-    (".txt", ".xlsx", ".parquet", ".npy", ".npz"):
-        "read its columns by NumPy or pandas, and look at a mesh of them: "
-        "mesh = pyvista.PolyData(rows of x, y, z), mesh['name'] = values",
-    (".fits", ".fit", ".fts"):
-        "read its array by astropy, and look at an image of it: "
-        "mesh = pyvista.ImageData(dimensions=(nx, ny, nz)), mesh['name'] = values.ravel()",
-    (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",
-    (".step", ".stp", ".iges", ".igs", ".brep"):
-        "gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{name}' -o '{stem}.stl'",
-    (".dcd", ".trr", ".xtc", ".psf", ".prmtop", ".tpr", ".pdbqt", ".mmtf", ".bcif"):
-        "write a state of the molecule as .pdb, .cif or .xyz, for example by MDAnalysis or VMD",
-    (".blend", ".fbx", ".ifc", ".x3d"):
-        "Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'",
-}  # fmt: skip
-_USUAL_WAY = (
-    "convert it to .vtu, .vti, .ply, .stl, .glb, .tif or .nc, or save a mesh of its numbers by "
-    "PyVista: PolyData(points, faces) of a surface, ImageData of an image or a volume"
-)
-
-
 def _by_package(path: Path) -> pv.DataObject:
     """Return the data of a file that VTK has no reader for, but a package such as meshio."""
     try:
         return pv.read(path, validate=False)
     except OSError as error:
-        suffix = path.suffix.lower()
-        way = next((way for ends, way in _WAYS.items() if suffix in ends), _USUAL_WAY)
-        way = way.replace("{name}", path.name).replace("{stem}", path.stem)
-        raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
+        raise FileError(other_formats.reason(path)) from error
 
 
 def _left_out(data: pv.MultiBlock, meshes: Sequence[pv.DataSet]) -> list[str]:

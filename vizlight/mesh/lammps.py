@@ -33,7 +33,7 @@ def read(path: Path) -> pv.PolyData | None:
         Where the dump has elements, bonds and atoms as of :func:`.molecules.of_xyz`. Else points in
         the unit of the simulation with ``atom_type``, its type in the simulation, and ``radius``,
         the median distance of nearest neighbours. Further arrays are ``velocity``, ``force``,
-        ``charge``, ``molecule_id`` and ``mass``, as far as there are such columns.
+        ``charge``, ``molecule_id`` and ``mass``, as far as the dump has them.
 
     Raises
     ------

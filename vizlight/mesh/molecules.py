@@ -264,11 +264,13 @@ def attach_chains(
     said.add_kinds(RESIDUE, [(i, str(name), ()) for i, name in enumerate(kinds_of_residues)])
     if structure and "residue" in mesh.point_data:
         kinds = np.zeros(len(marks), dtype=np.uint8)
-        residues = np.asarray(mesh.point_data["residue"])
+        numbers_of_residues = np.asarray(mesh.point_data["residue"])
         rows = {name: np.flatnonzero(of_chain == i) for name, i in number.items()}
         for chain, first, last, kind in structure:
             inside = rows.get(chain, rows[every[0]][:0])
-            inside = inside[(residues[inside] >= first) & (residues[inside] <= last)]
+            inside = inside[
+                (numbers_of_residues[inside] >= first) & (numbers_of_residues[inside] <= last)
+            ]
             kinds[inside] = kind
         mesh.point_data[STRUCTURE] = kinds
         said.add_kinds(STRUCTURE, [(i, name, ()) for i, name in enumerate(ribbons.NAMES)])
