@@ -377,8 +377,8 @@ def ligands(atoms: pv.PolyData, /) -> pv.PolyData:
     Returns
     -------
     pyvista.PolyData
-        Bonds and atoms with their arrays, of the kinds of residues with the fewest atoms, at most
-        1000 together: lipids are as many as water.
+        Bonds and atoms with their arrays, of the kinds of residues with the fewest atoms, together
+        at most ``MOST_BESIDE``: lipids are as many as water.
 
     Raises
     ------

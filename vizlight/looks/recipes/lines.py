@@ -209,7 +209,7 @@ def backbone(case: Case) -> Drawing:
 
 
 def with_molecule(case: Case, drawing: Drawing, atoms: Step, size: float = 1.0) -> Drawing:
-    """Return a drawing with atoms and bonds beside what it shows, in the colours of elements."""
+    """Return a drawing with atoms and bonds beside its meshes, in the colours of elements."""
     contents = Contents(atoms.run())
     wishes = replace(case.wishes, frame=drawing.camera, picture={}, light={}, make_scene=None)
     array = contents.named("atom_type")
