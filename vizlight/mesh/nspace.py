@@ -629,7 +629,7 @@ def with_last_coordinate(mesh: pv.DataSet, name: str, /) -> pv.DataSet:
     Raises
     ------
     TypeError, ValueError
-        If there is no such mesh.
+        If it is no such mesh.
     """
     _check.instance("mesh", mesh, pv.DataSet, "a pyvista.DataSet")
     places = _named(mesh, "mesh", POSITION)
