@@ -38,6 +38,7 @@ from vizlight.mesh import (
     legacy_vtk,
     meaning,
     normals,
+    other_formats,
     references,
     series,
     short_files,
@@ -56,8 +57,9 @@ from vizlight.mesh.derived import (
     with_vectors,
 )
 from vizlight.mesh.fills import without_fills
-from vizlight.mesh.molecules import atoms_in, backbone
+from vizlight.mesh.molecules import atoms_in, backbone, ligands
 from vizlight.mesh.montages import side_by_side
+from vizlight.mesh.nspace import with_last_coordinate
 from vizlight.mesh.stresses import with_von_mises
 from vizlight.mesh.subdivision import simplices
 from vizlight.vtk import messages
@@ -72,8 +74,9 @@ except ImportError:  # on Windows
 
 __all__ = [
     "FileError", "atoms_in", "backbone", "borders", "creases", "cut_open", "layer_of", "layers",
-    "read", "read_parts", "side_by_side", "stretched", "surface_of", "warped", "with_vectors",
-    "with_von_mises", "without_corner", "without_fills", "write_mesh",
+    "ligands", "read", "read_parts", "side_by_side", "stretched", "surface_of", "warped",
+    "with_last_coordinate", "with_vectors", "with_von_mises", "without_corner", "without_fills",
+    "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.
@@ -151,9 +154,9 @@ def read(
     """Read a mesh from a file; one that is damaged does not end this process.
 
     These are files that PyVista reads, tractograms, rasters, netCDF grids, molecules and crystals
-    (.pdb, .cif, .xyz), maps of densities (.mrc, .ccp4), fields of OpenDX (.dx), point clouds
-    (.las, .pcd), and tables (.csv) of points that name columns of places in their first line: x,
-    y, z or lon, lat.
+    (.pdb, .cif, .pdbx, .xyz, dumps of LAMMPS), maps of densities (.mrc, .ccp4), fields of OpenDX
+    (.dx), point clouds (.las, .pcd), and tables (.csv) of points that name columns of places in
+    their first line: x, y, z or lon, lat.
 
     Parameters
     ----------
@@ -697,38 +700,12 @@ def _damaged(path: Path, reason: str) -> FileError:
     return _wrong("file", "a file that is not damaged", got, remedy)
 
 
-#: Ways to files of other formats, by the ends of their names.
-_WAYS: dict[tuple[str, ...], str] = {
-    (*_UNPACK, ".zip"): "unpack it first",
-    (".pqr", ".fchk", ".molden"):
-        "Open Babel makes a .pdb of it: obabel '{name}' -O '{stem}.pdb'",
-    (".txt", ".xlsx", ".parquet", ".npy", ".npz"):
-        "read its columns by NumPy or pandas, and look at a mesh of them: "
-        "mesh = pyvista.PolyData(rows of x, y, z), mesh['name'] = values",
-    (".fits", ".fit", ".fts"):
-        "read its array by astropy, and look at an image of it: "
-        "mesh = pyvista.ImageData(dimensions=(nx, ny, nz)), mesh['name'] = values.ravel()",
-    (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",
-    (".step", ".stp", ".iges", ".igs", ".brep"):
-        "gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{name}' -o '{stem}.stl'",
-    (".blend", ".fbx", ".ifc", ".x3d"):
-        "Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'",
-}  # fmt: skip
-_USUAL_WAY = (
-    "convert it to .vtu, .vti, .ply, .stl, .glb, .tif or .nc, or save a mesh of its numbers by "
-    "PyVista: PolyData(points, faces) of a surface, ImageData of an image or a volume"
-)
-
-
 def _by_package(path: Path) -> pv.DataObject:
     """Return the data of a file that VTK has no reader for, but a package such as meshio."""
     try:
         return pv.read(path, validate=False)
     except OSError as error:
-        suffix = path.suffix.lower()
-        way = next((way for ends, way in _WAYS.items() if suffix in ends), _USUAL_WAY)
-        way = way.replace("{name}", path.name).replace("{stem}", path.stem)
-        raise FileError(f"no reader takes '{path.suffix}' files; {way}") from error
+        raise FileError(other_formats.reason(path)) from error
 
 
 def _left_out(data: pv.MultiBlock, meshes: Sequence[pv.DataSet]) -> list[str]:

@@ -376,9 +376,47 @@ def test_a_molecule_of_long_chains_shows_its_backbone(tmp_path):
     chain.save(tmp_path / "fold.vtp")
     look = vizlight.look(tmp_path / "fold.vtp", size=SIZE, array="residue")
     key = look.drawing.keys[0]
+    # One chain is seen from one side, though its values differ on both.
+    assert look.drawing.layers[0].mesh.path == "files.backbone"
     # The bar ends at the first and the last residue, and has numbers there.
     assert (key["title"], key["clim"]) == ("fold, residue", (4, 64))
     assert key["levels"] == [4, 10, 20, 30, 40, 50, 60, 64]
+
+
+def test_many_atoms_without_bonds_are_balls_with_light(tmp_path):
+    x, y, z = (9.0 * axis.ravel() for axis in np.mgrid[:11, :11, :11])
+    lines = [f"Ar {a} {b} {c}" for a, b, c in zip(x, y, z, strict=True)]
+    path = tmp_path / "gas.xyz"
+    path.write_text("\n".join([str(len(lines)), "", *lines]) + "\n")
+    look = vizlight.look(path, size=SIZE)
+    assert (look.shown, look.array) == ("molecule", "atom_type")
+    # Half of the radius of argon, 1.88 angstroms.
+    np.testing.assert_allclose(np.reshape(look.mesh.bounds, (3, 2))[:, 0], -0.94, atol=0.06)
+    assert not any(layer.keywords.get("lighting") is False for layer in look.drawing.layers)
+
+
+def test_ligands_are_balls_and_sticks_beside_the_chains(tmp_path):
+    row = "{:6}{:5d} {:4} {:3} A{:4d}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00          {:>2}  "
+    rows = [
+        row.format("ATOM", i, " CA", "GLY", i, 3 * np.cos(i), 3 * np.sin(i), 1.2 * i, "C")
+        for i in range(1, 71)
+    ]
+    rows += [
+        row.format("HETATM", 80 + i, " O1", name, 80 + i, 40.0 + 20 * i, 0, 0, "O")
+        for i, name in enumerate(["LIG", "HOH"])
+    ]
+    path = tmp_path / "one.pdb"
+    path.write_text("\n".join(rows) + "\n")
+    look = vizlight.look(path, size=SIZE)
+    assert look.shown == "backbone"
+    chains, ligands = (layer.mesh.run() for layer in look.drawing.layers)
+    assert chains.bounds[1] < 10
+    # The ball of the ligand, without water, is in the picture.
+    np.testing.assert_allclose(ligands.center, (40, 0, 0), atol=0.01)
+    assert look.view.focal_point[0] > 15
+    assert look.notes == ("beside the chains: LIG (1 atom)", "left out: HOH (1 atom)")
+    assert [key["title"] for key in look.key] == ["one, residue", ""]
+    assert "files.ligands(" in look.script()
 
 
 def test_a_part_with_most_points_on_its_surface_shows_values_there():
@@ -684,3 +722,31 @@ def test_a_step_of_a_climatology_has_the_name_of_its_month():
     hours = 366 + 730.485 * np.arange(12)
     titles = [titled(series.marked(grid, hours, i), "SST") for i in (0, 1, 11)]
     assert titles == ["SST, January", "SST, February", "SST, December"]
+
+
+def test_a_surface_of_four_coordinates_is_not_folded_onto_itself():
+    circle = np.linspace(0, 2 * np.pi, 33)
+    u, v = np.meshgrid(circle, circle, indexing="ij")
+    x, y, z, w = (np.sqrt(0.5) * rows for rows in (np.cos(u), np.sin(u), np.cos(v), np.sin(v)))
+    mesh = pv.StructuredGrid(x, y, z).extract_surface(algorithm="geometry")
+    mesh["position"] = pv.StructuredGrid(x, y, z).points[:, [0, 1, 2, 2]].astype(float)
+    mesh["position"][:, 3] = w.ravel(order="F")
+    look = vizlight.look(mesh, size=SIZE)
+    assert (look.question, look.shown, look.array) == ("value", "surface", "w")
+    assert look.key[0]["title"] == "w, the last of 4 coordinates"
+    # From the pole of the sphere: a torus of revolution.
+    places = np.asarray(mesh["position"])
+    image = places[:, :3] / (1 - places[:, 3:])
+    np.testing.assert_allclose(look.mesh.points, image, atol=1e-6)
+    assert any("perspective" in note and "distance" in note for note in look.notes)
+    # One that is projected already stays as it is.
+    ready = vizlight.project(mesh, distance=2.0)
+    look = vizlight.look(ready, size=SIZE)
+    assert look.array == "w"
+    np.testing.assert_array_equal(look.mesh.points, ready.points)
+    assert not look.notes
+    # Other data have the colours.
+    mesh["heat"] = np.asarray(mesh.points, float)[:, 0]
+    look = vizlight.look(mesh, size=SIZE)
+    assert look.array == "heat"
+    np.testing.assert_allclose(look.mesh.points, image, atol=1e-6)

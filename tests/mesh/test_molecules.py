@@ -49,7 +49,7 @@ def test_atoms_of_xyz_are_joined_by_their_distances(tmp_path):
     assert sorted(map(sorted, water.lines.reshape(-1, 3)[:, 1:].tolist())) == [[0, 1], [0, 2]]
     assert water.n_verts == 0
     assert meaning.flags(water, "atom_type") == {1: "H", 8: "O"}
-    assert meaning.flags(water, "atom_type", "colors") == {1: "#b2b2b2", 8: "#ff0d0d"}
+    assert meaning.flags(water, "atom_type", "colors") == {1: "#e6e6e6", 8: "#ff0d0d"}
     far = WATER.replace("3", "4", 1) + "Na1 9 9 9\n"
     with pytest.warns(UserWarning, match="the first of 2 states"):
         salt = vizlight.read(written(tmp_path, far + far, "salt.xyz"))
@@ -139,6 +139,8 @@ def test_records_of_cif_are_those_of_pdb(tmp_path):
     path = written(tmp_path, HELIX + SHEET + "".join(helix(40, "A")), "a.pdb")
     gemmi.read_pdb(str(path)).make_mmcif_document().write_file(str(tmp_path / "a.cif"))
     of_pdb, of_cif = vizlight.read(path), vizlight.read(tmp_path / "a.cif")
+    (tmp_path / "a.cif").rename(tmp_path / "a.pdbx")
+    assert vizlight.read(tmp_path / "a.pdbx") == of_cif
     assert of_pdb["secondary_structure"].max() == 2
     np.testing.assert_array_equal(of_cif["secondary_structure"], of_pdb["secondary_structure"])
 
@@ -151,6 +153,47 @@ def test_the_oxygen_of_a_peptide_is_marked_and_that_of_water_is_not(tmp_path):
     rows = [("CA", 0, 1), ("O", 2.4, 1), ("CA", 3.8, 2), ("O", 9, 2), ("O", 2.3, 3)]
     mesh = vizlight.read(written(tmp_path, "".join(atom(*row) for row in rows), "a.pdb"))
     assert mesh["backbone_mask"].tolist() == [1, 2, 1, 0, 2]
+
+
+def test_an_alpha_carbon_may_begin_where_calcium_does(tmp_path):
+    """CHARMM writes all names at the left edge of their columns."""
+    lines = helix(70, "A")
+    shifted = [line.replace("  CA  GLY", " CA   GLY") for line in lines]
+    whole, left = (
+        vizlight.read(written(tmp_path, "".join(rows), "a.pdb")) for rows in (lines, shifted)
+    )
+    assert shifted != lines
+    np.testing.assert_array_equal(left["backbone_mask"], whole["backbone_mask"])
+    assert left["backbone_mask"].all()
+    ion = "HETATM   99 CA    CA A  99       9.000   9.000   9.000  1.00  0.00          CA  \n"
+    assert vizlight.read(written(tmp_path, ion, "ion.pdb"))["backbone_mask"].tolist() == [0]
+
+
+def hetero(name, residue, number, place, element):
+    line = "HETATM{:5d} {:4} {:3} A{:4d}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00          {:>2}  \n"
+    return line.format(number, name, residue, number, *place, element)
+
+
+def test_ligands_are_what_is_in_no_chain_without_water(tmp_path):
+    odd = [*helix(70, "A")]
+    # A modified amino acid has a carbon of the backbone.
+    odd[4] = odd[4].replace("ATOM  ", "HETATM").replace("GLY", "CSO")
+    beside = [
+        hetero(" C1 ", "LIG", 101, (20, 0, 0), "C"), hetero(" C2 ", "LIG", 101, (21.4, 0, 0), "C"),
+        hetero("MG  ", "MG", 102, (30, 0, 0), "MG"), hetero(" O  ", "HOH", 103, (40, 0, 0), "O"),
+    ]  # fmt: skip
+    atoms = vizlight.read(written(tmp_path, "".join(odd + beside), "a.pdb"))
+    assert molecules.beside_chains(atoms) == {"HOH": 1, "LIG": 2, "MG": 1}
+    ligands = molecules.ligands(atoms)
+    assert ligands["atom_type"].tolist() == [6, 6, 12]
+    assert (ligands.n_lines, ligands.n_verts) == (1, 1)
+    np.testing.assert_allclose(ligands.points[:, 0], [20, 21.4, 30])
+    # As many as lipids have would hide the chains.
+    crowd = [hetero(" C1 ", "POP", 200, (9 * i, 90, 0), "C") for i in range(99)] * 11
+    atoms = vizlight.read(written(tmp_path, "".join(odd + beside + crowd), "a.pdb"))
+    assert molecules.beside_chains(atoms)["POP"] == 1089
+    assert molecules.ligands(atoms).n_points == 3
+    assert molecules.ligands(vizlight.read(written(tmp_path, WATER, "w.xyz"))).n_points == 0
 
 
 def test_a_backbone_needs_a_molecule_of_residues(tmp_path):

@@ -102,3 +102,39 @@ def test_a_point_that_is_not_finite_spoils_its_cells_alone():
     cut = nspace.cut(mesh, np.where(np.isnan(mesh["v"]), np.nan, heights))
     assert 0 < cut.n_points < 5
     assert np.all(np.isfinite(cut["v"]))
+
+
+def clifford(count):
+    """Return the torus of two circles of radius 0.7 in 4-space as points, and its mesh."""
+    circles = np.linspace(0, 2 * np.pi, count)
+    u, v = np.meshgrid(circles, circles, indexing="ij")
+    places = np.stack([np.cos(u), np.sin(u), np.cos(v), np.sin(v)], axis=-1) * np.sqrt(0.5)
+    mesh = pv.StructuredGrid(*places[..., :3].transpose(2, 0, 1)[..., np.newaxis])
+    mesh["position"] = places.transpose(1, 0, 2).reshape(-1, 4)
+    return mesh
+
+
+@pytest.mark.parametrize("count", [16, 64])
+def test_sheets_onto_each_other_are_seen(count):
+    mesh = clifford(count)
+    assert nspace.is_dropped(mesh)
+    assert nspace.covers_itself(mesh)
+    # A graph crosses itself along lines alone.
+    z = np.add.outer(np.linspace(-1, 1, 4 * count), 1j * np.linspace(-1, 1, 4 * count)).ravel()
+    graph = pv.PolyData(np.stack([z.real, z.imag, (z**2).real], axis=1))
+    graph["position"] = np.stack([z.real, z.imag, (z**2).real, (z**2).imag], axis=1)
+    assert nspace.is_dropped(graph)
+    assert not nspace.covers_itself(graph)
+    graph.points *= 2
+    assert not nspace.is_dropped(graph)
+
+
+def test_the_eye_is_beyond_all_points():
+    mesh = clifford(16)
+    # On a sphere: the stereographic projection.
+    assert nspace.eye_distance(mesh) == pytest.approx(1)
+    mesh["position"] = mesh["position"] + [3, 0, 0, 5]
+    assert nspace.eye_distance(mesh) > mesh["position"][:, 3].max()
+    named = nspace.with_last_coordinate(mesh, "w")
+    np.testing.assert_array_equal(named["w"], mesh["position"][:, 3])
+    assert "w" not in mesh.point_data

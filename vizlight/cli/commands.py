@@ -32,6 +32,7 @@ from vizlight.cli.options import (
 )
 from vizlight.cli.output import OK, complain, draw, say
 from vizlight.looks.steps import Step, source
+from vizlight.mesh import other_formats
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -202,6 +203,8 @@ def light(
     refine
         Largest error between points, such as 1/255: cells are split where it is more.
     """
+    for path in files:
+        other_formats.check(path)
     light_options = keywords(how)
     if indices := _indices(common.out, pieces):
         if legibility:

@@ -202,7 +202,8 @@ class Margin:
     def _stack(self, room: tuple[float, float], short: int, *, beside: bool) -> None:
         """Stack the keys in the middle of a strip, smaller where they would not fit."""
         axis = 1 if beside else 0
-        alone = len(self._keys) == 1
+        # Kinds without a title, such as elements, are none that another could be taken for.
+        alone = sum(bool(key.title) or not key.has_kinds for key in self._keys) == 1
         scale = 1.0
         for _ in range(4):
             letters, gap = LETTERS * short * scale, MARGIN * short * scale

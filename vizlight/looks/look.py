@@ -287,8 +287,9 @@ class Look:
     def _with_bar(self, layer: Layer) -> Layer:
         """Return a layer with the bar of its values, which a page draws in place of the key."""
         values = [key for key in self._titled_keys if key.get("question") == "value"]
-        clim = layer.keywords.get("clim")
-        key = next((key for key in values if len(values) == 1 or key.get("clim") == clim), None)
+        colors = [layer.keywords.get(name) for name in ("clim", "cmap")]
+        alike = (key for key in values if [key.get("clim"), key.get("cmap")] == colors)
+        key = values[0] if len(values) == 1 else next(alike, None)
         if key is None or layer.keywords.get("scalars") is None:
             return layer
         bar = {"show_scalar_bar": True, "scalar_bar_args": {"title": key["title"]}}
@@ -485,6 +486,8 @@ def decide(data: object, wishes: Wishes) -> Look:
             look_options.check_flow(part, step.run(), wishes.light.get("tangents"))
     if len(ready) == 1:
         ((step, contents, notes),) = ready
+        step, contents, wishes, words = look_options.in_space(step, contents, wishes)
+        notes = [*notes, *words]
         step, contents = look_options.charted(step, contents, wishes)
         step, contents = look_options.laid_flat(step, contents, wishes)
         rule, case = _chosen(step, contents, wishes)

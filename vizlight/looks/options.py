@@ -21,7 +21,7 @@ from vizlight.looks import cuts, map_parts
 from vizlight.looks.contents import Contents
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import STYLES, Wishes, direction, scene_step
-from vizlight.mesh import charts, georeference, globes, height_grids, meaning, series
+from vizlight.mesh import charts, georeference, globes, height_grids, meaning, nspace, series
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import PRESETS, required_scene
@@ -252,6 +252,42 @@ def charted(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Conte
     if charts.is_torn(chart.run()):
         return step, contents
     return chart, replace(contents, mesh=chart.run())
+
+
+def in_space(
+    step: Step, contents: Contents, wishes: Wishes
+) -> tuple[Step, Contents, Wishes, list[str]]:
+    """Return the step that shows the last of n coordinates, its contents, wishes and notes.
+
+    Where the others alone would put sheets onto each other it is a perspective projection. The
+    coordinate has colours where a mesh has no other data and nobody asks for other light. Other
+    data, and meshes that are projected already, are only coloured.
+    """
+    mesh = contents.mesh
+    if contents.dimension not in (1, 2) or wishes.question not in ("auto", "value", "shape"):
+        return step, contents, wishes, []
+    rows = mesh.point_data.get(nspace.POSITION)
+    if rows is None or rows.ndim != 2 or rows.shape[1] < 4 or not np.isfinite(rows).all():
+        return step, contents, wishes, []
+    n, notes = rows.shape[1], list[str]()
+    if nspace.is_dropped(mesh) and nspace.covers_itself(mesh):
+        distance = nspace.eye_distance(mesh)
+        step = Step("projected", "vizlight.project", step, distance=distance)
+        notes = [f"perspective from {distance:.4g} along axis {n}; project(mesh, distance=...) "
+                 "takes another"]  # fmt: skip
+    elif nspace.is_dropped(mesh):
+        notes = [f"coordinates 1 to 3 of {n}; project(mesh, distance=...) shows all by perspective"]
+    is_free = not wishes.light and wishes.make_scene is None and wishes.question != "shape"
+    ends = float(rows[:, -1].min()), float(rows[:, -1].max())
+    name = "w" if n == len("xyzw") else f"x{n}"
+    if is_free and not contents.arrays and ends[0] < ends[1] and name not in mesh.array_names:
+        step = Step("colored", "files.with_last_coordinate", step, name)
+        size = max(map(abs, ends))
+        # Of both signs 0 is in the middle; there are no outliers.
+        clim = (-size, size) if ends[0] < 0 < ends[1] else ends
+        wishes = replace(wishes, picture={"clim": clim} | dict(wishes.picture))
+    contents = contents if step.run() is mesh else replace(contents, mesh=step.run())
+    return step, contents, wishes, notes
 
 
 def laid_flat(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Contents]:

@@ -15,6 +15,13 @@ from vizlight.mesh.brains import of_affine
 #: A bohr in angstroms, by CODATA 2018.
 BOHR = 0.529177210903
 
+#: Comments that name no values: of the program, its version and date, or of numbers alone; and a
+#: name with its unit in parentheses.
+_NO_NAME = re.compile(
+    r"version|generated|written|created|\bcube\b|\bdate\b|^[^A-Za-z]*$", re.IGNORECASE
+)
+_WITH_UNIT = re.compile(r"(.+?)(?:\s*\(([^()]*)\))?")
+
 
 def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     """Return the values of a cube file at their places in angstroms, its atoms as field arrays.
@@ -50,9 +57,14 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     if values.size != size:
         raise ValueError(f"{values.size} of {size} values are there")
     grid = of_affine(affine, shape)
-    # The second comment names the values, or repeats the order of the indices.
-    comment, stem = head[1].strip(), path.name.partition(".")[0]
-    title = stem if not comment or "loop" in comment.lower() else comment
+    # The second comment names the values or repeats the order of the indices; some programs have
+    # their version in it, and the name in the first.
+    comments = [line.strip() for line in ([] if "loop" in head[1].lower() else head[1::-1])]
+    stem = path.name.partition(".")[0]
+    title = next((line for line in comments if line and not _NO_NAME.search(line)), stem)
+    match = _WITH_UNIT.fullmatch(title)
+    assert match is not None
+    title, value_unit = match.groups()
     # The last index runs fastest, of orbitals that of the orbital.
     for number, rows in zip(numbers, values.reshape(-1, len(numbers)).T, strict=True):
         name = f"orbital {number}" if has_orbitals else title
@@ -60,7 +72,10 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     if n_atoms:
         grid.field_data[molecules.NUMBERS] = atoms[:, 0].astype(np.intp)
         grid.field_data[molecules.PLACES] = unit * atoms[:, 2:]
-    meaning.attach(grid, meaning.Meaning(["x in angstroms", "y", "z"]))
+    said = meaning.Meaning(["x in angstroms", "y", "z"])
+    if value_unit and not has_orbitals:
+        said.add_array(title, {"units": value_unit})
+    meaning.attach(grid, said)
     return grid
 
 

@@ -28,6 +28,7 @@ from vizlight.mesh import (
     file_parts,
     geomview,
     georeference,
+    lammps,
     meaning,
     molecule_files,
     molecules,
@@ -48,6 +49,8 @@ from vizlight.vtk.topology import place_numbers
 
 #: Number of bytes at the start of an .inp file that show whether it is one of Abaqus.
 _INP_HEAD = 64
+#: Ends of names of files of CIF.
+CIF = (".cif", ".mmcif", ".pdbx")
 #: Package that reads the files of a suffix, and the extra that installs it, if one does.
 PACKAGES = {
     suffix: (package, extra)
@@ -55,7 +58,7 @@ PACKAGES = {
         ("nibabel", "tracts", (".trk", ".tck", ".gii", ".nii", ".mgz", ".img")),
         ("trx-python", "tracts", (".trx",)),
         ("laspy", "formats", (".las", ".laz")),
-        ("gemmi", "formats", (".cif", *density_maps.SUFFIXES)),
+        ("gemmi", "formats", (*CIF, *density_maps.SUFFIXES)),
         ("xarray", "formats", cf_grids.NETCDF),
         ("cfgrib", "", cf_grids.GRIB),
         ("zarr", "", cf_grids.ZARR),
@@ -595,7 +598,8 @@ _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = 
     ".trk": _tracts, ".tck": _tracts, ".trx": _tracts_of_trx, ".pts": _scan, ".xyz": _scan,
     ".las": _lidar, ".laz": _lidar, ".pcd": point_clouds.read,
     ".obj": _wavefront, ".off": geomview.read_off,
-    ".pdb": molecules.of_pdb, ".ent": molecules.of_pdb, ".cif": molecules.of_cif,
+    ".pdb": molecules.of_pdb, ".ent": molecules.of_pdb,
+    **dict.fromkeys(CIF, molecules.of_cif), ".lammpstrj": lammps.read, ".dump": lammps.read,
     ".gro": molecule_files.of_gro, ".mol2": molecule_files.of_mol2,
     ".mol": molecule_files.of_mol, ".sdf": molecule_files.of_mol,
     ".cube": cubes.read, ".dx": cubes.read_dx, ".ply": ply.read, ".su2": su2.read,

@@ -63,22 +63,20 @@ def of_gro(path: Path) -> pv.PolyData:
     elements = [_element(*pair) for pair in names]
     mesh = molecules.joined(elements, _NANOMETRE * rows[:, :3])
     mesh.point_data["residue"] = _numbers([[line[:5]] for line in atoms])[:, 0].astype(np.intp)
-    kinds, numbers = np.unique([residue for residue, _ in names], return_inverse=True)
-    mesh.point_data["residue_name"] = numbers
-    said = meaning.of(mesh)
-    said.add_kinds("residue_name", [(i, str(kind), ()) for i, kind in enumerate(kinds)])
     if rows.shape[1] > 3:
         mesh.point_data["velocity"] = rows[:, 3:]
+        said = meaning.of(mesh)
         said.add_array("velocity", {"units": "nm/ps"})
-    meaning.attach(mesh, said)
+        meaning.attach(mesh, said)
     molecules.attach_chains(
         mesh,
         ["A"] * count,
         [(name, element) for (_, name), element in zip(names, elements, strict=True)],
+        [residue for residue, _ in names],
     )
     if not mesh.n_lines:
         del mesh.point_data["atom_type"], mesh.point_data["radius"]
-        mesh.set_active_scalars("residue_name")
+        mesh.set_active_scalars(molecules.RESIDUE)
     return mesh
 
 

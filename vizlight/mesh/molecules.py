@@ -18,8 +18,9 @@ from vizlight.model import formulas
 
 #: Atomic numbers of elements that are no metals.
 NO_METALS = [1, 2, *range(5, 11), *range(14, 19), *range(32, 37), *range(52, 55), 85, 86]
-#: Largest luma of the colour of an element.
-PALE = 0.7
+#: Largest luma of the colour of an element, and the greys of hydrogen and carbon, which are white
+#: and black in models.
+PALE, GREYS = 0.7, {1: 0.9, 6: 0.3}
 #: A coordinate in its columns.
 _PLACE = re.compile(r"\s*[+-]?\d+\.?\d*\s*")
 #: Symbol of an atom at the start of a line of an XYZ file.
@@ -48,6 +49,19 @@ MANY = 5000
 OFF, USUAL = 0.25, 0.75
 #: Share of an edge of a cell up to which places are one.
 ROUNDED = 1e-3
+#: Name of the array of the names of residues, names of amino acids and nucleotides in the Protein
+#: Data Bank and in force fields, and those of water.
+RESIDUE = "residue_name"
+_OF_CHAINS = {
+    "A", "ACE", "ADE", "ALA", "ARG", "ASH", "ASN", "ASP", "ASX", "C", "CYM", "CYS", "CYT",
+    "CYX", "DA", "DC", "DG", "DI", "DT", "DU", "G", "GLH", "GLN", "GLU", "GLX", "GLY", "GUA",
+    "HID", "HIE", "HIP", "HIS", "HSD", "HSE", "HSP", "I", "ILE", "LEU", "LYN", "LYS", "MET",
+    "MSE", "NH2", "NMA", "NME", "PHE", "PRO", "PYL", "SEC", "SER", "T", "THR", "THY", "TRP",
+    "TYR", "U", "UNK", "URA", "VAL",
+}  # fmt: skip
+WATERS = {"HOH", "WAT", "H2O", "DOD", "SOL", "TIP", "TIP3", "TIP4", "TP3", "SPC"}
+#: Most atoms beside chains that are drawn.
+MOST_BESIDE = 1000
 #: Names and elements of the atoms that stand for a residue of a protein and of a nucleic acid.
 _BACKBONE = {("CA", "C"), ("P", "P")}
 
@@ -67,8 +81,8 @@ def of_pdb(path: Path) -> pv.PolyData:
     -------
     pyvista.PolyData
         Bonds, and points of atoms without any, with ``atom_type``, the atomic number, ``radius``,
-        that of van der Waals, ``residue``, ``chain``, ``occupancy``, ``b_factor`` and
-        ``backbone_mask``, 1 for the atom that stands for a residue and 2 for the oxygen of its
+        that of van der Waals, ``residue``, ``residue_name``, ``chain``, ``occupancy``, ``b_factor``
+        and ``backbone_mask``, 1 for the atom that stands for a residue and 2 for the oxygen of its
         peptide; where the file tells of helices and strands, with ``secondary_structure``. Of atoms
         with several places the first is taken.
 
@@ -103,15 +117,24 @@ def of_pdb(path: Path) -> pv.PolyData:
             mesh.point_data[name] = [type(none)(word) if word else none for word in words]
         except ValueError:
             continue  # numbers of residues may have letters
-    names = [line[12:16] for line in atoms]
-    # A calcium ion has its name one column before that of a carbon.
+    residues = [line[17:21].strip() for line in atoms]
+    names = [_name(line[12:16], residue) for line, residue in zip(atoms, residues, strict=True)]
     attach_chains(
         mesh, [line[21:22] for line in atoms],
-        [(name[1:].strip() if name[:1] == " " else name, each.upper())
-         for name, each in zip(names, elements, strict=True)],
+        [(name, each.upper()) for name, each in zip(names, elements, strict=True)],
+        residues,
         _records(lines),
     )  # fmt: skip
     return mesh
+
+
+def _name(columns: str, residue: str) -> str:
+    """Return the name of an atom of a residue.
+
+    A calcium ion has its name one column before that of a carbon, but some programs begin all names
+    in that column.
+    """
+    return columns.strip() if columns.startswith(" ") or residue in _OF_CHAINS else columns
 
 
 def _records(lines: Sequence[str]) -> list[tuple[str, int, int, int]]:
@@ -177,7 +200,7 @@ def _macromolecule(structure: Foreign, path: Path) -> pv.PolyData:
     if len(structure) > 1:
         warn_of_states(path, len(structure))
     rows = [
-        (chain.name, residue.seqid.num, atom)
+        (chain.name, residue, atom)
         for chain in structure[0]
         for residue in chain
         for atom in residue
@@ -185,7 +208,7 @@ def _macromolecule(structure: Foreign, path: Path) -> pv.PolyData:
     ]
     elements = [atom.element.name for _, _, atom in rows]
     mesh = joined(elements, [atom.pos.tolist() for _, _, atom in rows])
-    mesh.point_data["residue"] = [number for _, number, _ in rows]
+    mesh.point_data["residue"] = [residue.seqid.num for _, residue, _ in rows]
     mesh.point_data["occupancy"] = [atom.occ for _, _, atom in rows]
     mesh.point_data["b_factor"] = [atom.b_iso for _, _, atom in rows]
     names = [(atom.name, atom.element.name.upper()) for _, _, atom in rows]
@@ -195,7 +218,8 @@ def _macromolecule(structure: Foreign, path: Path) -> pv.PolyData:
         (each.start.chain_name, each.start.res_id.seqid.num, each.end.res_id.seqid.num, kind)
         for kind, each in parts
     ]
-    attach_chains(mesh, [name for name, _, _ in rows], names, ends)
+    residues = [residue.name for _, residue, _ in rows]
+    attach_chains(mesh, [name for name, _, _ in rows], names, residues, ends)
     return mesh
 
 
@@ -203,9 +227,10 @@ def attach_chains(
     mesh: pv.PolyData,
     chains: Sequence[str],
     names: Sequence[tuple[str, str]],
+    residues: Sequence[str],
     structure: Sequence[tuple[str, int, int, int]] = (),
 ) -> None:
-    """Attach the numbers of chains, with their names, and marks of the atoms of backbones.
+    """Attach the numbers of chains and of residues by name, and marks of the atoms of backbones.
 
     Parameters
     ----------
@@ -215,6 +240,8 @@ def attach_chains(
         Name of the chain of each.
     names : sequence of (str, str)
         Name and element of each.
+    residues : sequence of str
+        Name of the residue of each.
     structure : sequence of (str, int, int, int)
         Chain, first and last residue, and kind of each helix and strand of which the file tells.
     """
@@ -232,13 +259,18 @@ def attach_chains(
     mesh.point_data[BACKBONE] = marks
     said = meaning.of(mesh)
     said.add_kinds("chain", [(i, name.strip(), ()) for i, name in enumerate(every)])
+    kinds_of_residues, numbers = np.unique(residues, return_inverse=True)
+    mesh.point_data[RESIDUE] = numbers
+    said.add_kinds(RESIDUE, [(i, str(name), ()) for i, name in enumerate(kinds_of_residues)])
     if structure and "residue" in mesh.point_data:
         kinds = np.zeros(len(marks), dtype=np.uint8)
-        residues = np.asarray(mesh.point_data["residue"])
+        numbers_of_residues = np.asarray(mesh.point_data["residue"])
         rows = {name: np.flatnonzero(of_chain == i) for name, i in number.items()}
         for chain, first, last, kind in structure:
             inside = rows.get(chain, rows[every[0]][:0])
-            inside = inside[(residues[inside] >= first) & (residues[inside] <= last)]
+            inside = inside[
+                (numbers_of_residues[inside] >= first) & (numbers_of_residues[inside] <= last)
+            ]
             kinds[inside] = kind
         mesh.point_data[STRUCTURE] = kinds
         said.add_kinds(STRUCTURE, [(i, name, ()) for i, name in enumerate(ribbons.NAMES)])
@@ -331,6 +363,74 @@ def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
             surface.point_data[name] = between.astype(rows.dtype)
     surface.GetFieldData().ShallowCopy(atoms.GetFieldData())
     return surface
+
+
+def ligands(atoms: pv.PolyData, /) -> pv.PolyData:
+    """Return the atoms and bonds of a molecule that are in none of its chains, without water.
+
+    Parameters
+    ----------
+    atoms : pyvista.PolyData
+        Molecule as :func:`vizlight.read` reads it from a PDB, CIF or GROMACS file, which is not
+        changed.
+
+    Returns
+    -------
+    pyvista.PolyData
+        Bonds and atoms with their arrays, of the kinds of residues with the fewest atoms, together
+        at most ``MOST_BESIDE``: lipids are as many as water.
+
+    Raises
+    ------
+    TypeError
+        If it is no mesh of atoms.
+    """
+    _check.instance("atoms", atoms, pv.PolyData, "a pyvista.PolyData")
+    counts = beside_chains(atoms)
+    total, kept = 0, set[str]()
+    for name in sorted(set(counts) - WATERS, key=lambda name: counts[name]):
+        total += counts[name]
+        if total <= MOST_BESIDE:
+            kept.add(name)
+    if not kept:
+        return pv.PolyData()
+    names = meaning.flags(atoms, RESIDUE)
+    numbers = [number for number, name in names.items() if name in kept]
+    rows = np.flatnonzero(_are_beside(atoms) & np.isin(atoms.point_data[RESIDUE], numbers))
+    new = np.full(atoms.n_points, -1)
+    new[rows] = np.arange(len(rows))
+    pairs = new[np.reshape(atoms.lines, (-1, 3))[:, 1:]]
+    pairs = pairs[np.all(pairs >= 0, axis=1)]
+    out = _of_pairs(np.asarray(atoms.points)[rows], pairs)
+    for name, column in atoms.point_data.items():
+        out.point_data[name] = np.asarray(column)[rows]
+    out.GetFieldData().ShallowCopy(atoms.GetFieldData())
+    return out
+
+
+def beside_chains(atoms: pv.DataSet) -> dict[str, int]:
+    """Return the number of atoms in no chain, those of water too, by the names of residues."""
+    names = meaning.flags(atoms, RESIDUE)
+    if RESIDUE not in atoms.point_data or not names:
+        return {}
+    numbers, counts = np.unique(atoms.point_data[RESIDUE][_are_beside(atoms)], return_counts=True)
+    return {
+        names[number]: count
+        for number, count in zip(numbers.tolist(), counts.tolist(), strict=True)
+    }
+
+
+def _are_beside(atoms: pv.DataSet) -> Bools:
+    """Return which atoms are in no chain: neither in a residue of one nor in one by its name."""
+    names = meaning.flags(atoms, RESIDUE)
+    kinds = np.asarray(atoms.point_data[RESIDUE])
+    of_chains = [number for number, name in names.items() if name in _OF_CHAINS]
+    columns = [atoms.point_data[name] for name in ("chain", "residue") if name in atoms.point_data]
+    _, residue = np.unique(np.column_stack([kinds, *columns]), axis=0, return_inverse=True)
+    residue = np.ravel(residue)
+    # A modified amino acid has a name of its own.
+    marked = np.unique(residue[np.asarray(atoms.point_data[BACKBONE]) == 1])
+    return np.asarray(~np.isin(kinds, of_chains) & ~np.isin(residue, marked), dtype=np.bool_)
 
 
 def atoms_in(volume: pv.DataSet, /) -> pv.PolyData:
@@ -451,9 +551,7 @@ def joined(
     of_atoms = np.array([numbers[name] for name in elements], dtype=np.intp)
     if pairs is None:
         pairs = _bonds(of_atoms, points)
-    lines = np.insert(pairs, 0, 2, axis=1).ravel()
-    alone = np.setdiff1d(np.arange(len(points)), pairs)
-    mesh = pv.PolyData(points, lines=lines, verts=np.column_stack([np.ones_like(alone), alone]))
+    mesh = _of_pairs(points, pairs)
     mesh.point_data["atom_type"] = of_atoms
     radii = {name: table.GetVDWRadius(numbers[name]) for name in numbers}
     mesh.point_data["radius"] = [radii[name] for name in elements]
@@ -464,14 +562,22 @@ def joined(
         table.GetDefaultRGBTuple(number, color)
         # White and yellow are darker, to be seen on paper.
         light = float(np.dot(formulas.LUMA, color))
-        paler = [part * min(1, PALE / light) for part in color]
-        kinds.append((number, table.GetSymbol(number), paler))
+        shown = [part * min(1, PALE / light) for part in color]
+        shown = [GREYS[number]] * 3 if number in GREYS else shown
+        kinds.append((number, table.GetSymbol(number), shown))
     said = meaning.Meaning()
     said.add_array("atom_type", {"long_name": "element"})
     said.add_kinds("atom_type", kinds)
     said.arrays["atom_type"]["long_name"] = "element"
     meaning.attach(mesh, said)
     return mesh
+
+
+def _of_pairs(points: Array, pairs: Indices) -> pv.PolyData:
+    """Return lines between pairs of points, and points of those that are in none."""
+    alone = np.setdiff1d(np.arange(len(points)), pairs)
+    verts = np.column_stack([np.ones_like(alone), alone])
+    return pv.PolyData(points, lines=np.insert(pairs, 0, 2, axis=1).ravel(), verts=verts)
 
 
 def _bonds(of_atoms: Indices, points: Array) -> Indices:

@@ -13,7 +13,7 @@ from vizlight import _check, _pool
 from vizlight._types import AnyArray, Array, Bools, Indices, Sparse, VectorLike
 from vizlight._version import __version__
 from vizlight.geometry.nspace import projection, slices
-from vizlight.mesh import blocks, records
+from vizlight.mesh import blocks, meaning, records
 from vizlight.model.frames import default_rtol
 from vizlight.shading.results import Record, plain
 from vizlight.vtk import polylines
@@ -26,6 +26,17 @@ POSITION, FRAME, PROJECTED, RECORD = "position", "frame", "projected_", "project
 AGREEMENT = 0.8
 #: Number of rows that are processed at once, in float64.
 BLOCK = 1 << 15
+
+
+#: Most points of a mesh that are compared with their neighbours, and the number of these with each
+#: point itself.
+SAMPLE, NEIGHBOURS = 2000, 5
+#: Distance of two points in n-space over that of their images from which they are of two sheets,
+#: and the share of the points near another sheet from which the image covers itself.
+FOLDED, COVERED = 5.0, 0.3
+#: Deviation of the distances from the origin, as a share of them, up to which points are on a
+#: sphere, and their largest coordinate along the last axis, in radii, that is not near its pole.
+ON_SPHERE, FROM_POLE = 0.01, 0.9
 
 
 class Counter:
@@ -555,3 +566,76 @@ def _tetrahedra(kinds: Mapping[int, Indices], count: int) -> tuple[Indices, Indi
         for part in ([0, 1, 2], [0, 2, 3])
     ]
     return np.concatenate([kinds.get(pv.CellType.TETRA, none[:, :4]), *parts]), corners
+
+
+def is_dropped(mesh: pv.DataSet) -> bool:
+    """Return whether points are the first three of more coordinates, the others of which differ."""
+    rows = mesh.point_data.get(POSITION)
+    if rows is None or rows.ndim != 2 or rows.shape[1] < 4 or not len(rows):
+        return False
+    places = np.asarray(rows)
+    is_number = places.dtype.kind == "f" and bool(np.isfinite(places).all())
+    is_image = is_number and np.allclose(places[:, :3], mesh.points, atol=1e-6 * mesh.length)
+    return is_image and bool(np.ptp(places[:, 3:], axis=0).any())
+
+
+def covers_itself(mesh: pv.DataSet) -> bool:
+    """Return whether the first three coordinates put much of a mesh onto other parts of it.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh with places in n-space as ``position``.
+    """
+    places: Array = np.asarray(mesh.point_data[POSITION], dtype=np.float64)
+    if len(places) <= NEIGHBOURS:
+        return False
+    some = np.arange(0, len(places), max(len(places) // SAMPLE, 1))
+    tree = scipy.spatial.cKDTree(places[:, :3])
+    near, at = tree.query(places[some, :3], k=NEIGHBOURS)
+    far = np.linalg.norm(places[at] - places[some, np.newaxis], axis=2)
+    folded = (far > FOLDED * near) & (far > np.sqrt(np.finfo(np.float64).eps) * far.max())
+    return bool(folded.any(axis=1).mean() > COVERED)
+
+
+def eye_distance(mesh: pv.DataSet) -> float:
+    """Return a distance of the eye on the last axis from which all of a mesh is before it.
+
+    Of points on a sphere about the origin it is the radius, for the stereographic projection.
+    """
+    places: Array = np.asarray(mesh.point_data[POSITION], dtype=np.float64)
+    radii, top = np.linalg.norm(places, axis=1), float(places[:, 3:].max())
+    radius = float(radii.mean())
+    if np.ptp(radii) <= ON_SPHERE * radius and top <= FROM_POLE * radius:
+        return radius
+    return float(f"{max(top, 0.0) + float(np.ptp(places, axis=0).max()) / 2:.3g}")
+
+
+def with_last_coordinate(mesh: pv.DataSet, name: str, /) -> pv.DataSet:
+    """Return a mesh with the last coordinate of its places in n-space as a point array.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Mesh with the point array ``position`` of n components, which is not changed.
+    name : str
+        Name of the new array.
+
+    Returns
+    -------
+    pyvista.DataSet
+        Mesh with that array.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no such mesh.
+    """
+    _check.instance("mesh", mesh, pv.DataSet, "a pyvista.DataSet")
+    places = _named(mesh, "mesh", POSITION)
+    out = mesh.copy(deep=False)
+    records.attach_rows(out, _check.text("name", name), places[:, -1].copy())
+    said = meaning.of(out)
+    said.add_array(name, {"long_name": f"{name}, the last of {places.shape[1]} coordinates"})
+    meaning.attach(out, said)
+    return out

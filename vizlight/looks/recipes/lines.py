@@ -25,7 +25,7 @@ from vizlight.looks.recipes.drawing import (
 from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
-from vizlight.mesh import meaning, neurons
+from vizlight.mesh import meaning, molecules, neurons
 from vizlight.model import kernels
 from vizlight.vtk.cells import connectivity
 
@@ -59,6 +59,10 @@ ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
 #: Most atoms of a molecule that are balls, their size in radii of van der Waals, and the sticks
 #: between them, in angstroms.
 MOST_BALLS, BALL, STICK = 1000, 0.2, {"radius": 0.1, "n_sides": 20}
+#: Most atoms without bonds that are balls, and the size of these, which touch each other.
+MOST_ALONE, BALL_ALONE = 20_000, 0.5
+#: Size of atoms and sticks beside the chains of a large molecule, in that of others.
+BESIDE_CHAINS = 1.5
 #: Share of a bar of residues that is free between the number at an end and the next.
 CLOSE = 0.05
 #: Atoms up to whose number balls are large in a picture, and as much finer.
@@ -133,14 +137,19 @@ def _somas(case: Case) -> list[Layer]:
 
 
 def is_molecule(mesh: pv.DataSet) -> bool:
-    """Return whether a mesh is a molecule, with few enough atoms for balls and sticks."""
+    """Return whether a mesh is a molecule, with few enough atoms for balls, and sticks if any."""
     arrays = mesh.point_data
     is_one = isinstance(mesh, pv.PolyData) and {"atom_type", "radius"} <= set(arrays)
-    return is_one and mesh.n_points <= MOST_BALLS and np.ndim(arrays["radius"]) == 1
+    if not is_one or np.ndim(arrays["radius"]) != 1:
+        return False
+    return mesh.n_points <= (MOST_BALLS if mesh.n_lines else MOST_ALONE)
 
 
-def molecule(case: Case) -> Drawing:
-    """Draw the atoms of a molecule as balls, and its bonds as sticks, in the colours of values."""
+def molecule(case: Case, size: float = 1.0) -> Drawing:
+    """Draw the atoms of a molecule as balls, and its bonds as sticks, in the colours of values.
+
+    Balls and sticks are larger than usual by the factor ``size``.
+    """
     array, atoms = case.needed_array, case.data
     if array.name == "radius":
         # Balls have it as their size alone.
@@ -148,13 +157,16 @@ def molecule(case: Case) -> Drawing:
     bonds = atoms
     if array.role == "kinds":
         bonds = Step("halves", "files.surface_of", atoms, labels=array.name)
-    finer = FINER if atoms.run().n_points <= FEW_BALLS else 1
-    fine = {"theta_resolution": 24 * finer, "phi_resolution": 16 * finer}
+    count, has_bonds = atoms.run().n_points, bool(atoms.run().n_lines)
+    finer = FINER if count <= FEW_BALLS else 1
+    corners = (24 * finer, 16 * finer) if count <= MOST_BALLS else (12, 8)
+    fine = {"theta_resolution": corners[0], "phi_resolution": corners[1]}
     ball = Step("", "pyvista.Sphere", radius=1, **fine)
-    balls = Step("balls", ".glyph", atoms, orient=False, scale="radius", factor=BALL, geom=ball)
+    factor = BALL * size if has_bonds or size != 1 else BALL_ALONE
+    balls = Step("balls", ".glyph", atoms, orient=False, scale="radius", factor=factor, geom=ball)
     solid = balls
-    if atoms.run().n_lines:
-        stick = STICK | {"n_sides": STICK["n_sides"] * finer}
+    if has_bonds:
+        stick = {"radius": STICK["radius"] * size, "n_sides": STICK["n_sides"] * finer}
         solid = Step("molecule", ".append_polydata", balls, Step("", ".tube", bonds, **stick))
     wishes = case.wishes
     if case.contents.flat_axis == 2 and wishes.view is None and wishes.frame is None:
@@ -182,11 +194,48 @@ def backbone(case: Case) -> Drawing:
         free = CLOSE * (ends[1] - ends[0])
         inner = even_levels(ends[0] + free, ends[1] - free, USUAL)
         bar["levels"] = [ends[0], *inner, ends[1]]
-    across = eye_across(solid.run())
     chains = replace(case, data=solid, contents=Contents(solid.run()), wishes=wishes)
-    drawing = surfaces.values(replace(chains, viewpoint=across))
+    chains = replace(chains, viewpoint=eye_across(solid.run()))
+    ligands = Step("ligands", "files.ligands", case.data)
+    has_ligands = bool(ligands.run().n_points)
+    whole = Step("", "pyvista.MultiBlock", [solid, ligands]) if has_ligands else solid
+    # A fold is seen from one side, whatever its values are.
+    frame = wishes.camera(whole, chains.eye(solid))
+    drawing = surfaces.values(replace(chains, wishes=replace(wishes, frame=frame)))
     keys = [key | {"title": with_file(case.data, str(key["title"]))} | bar for key in drawing.keys]
-    return replace(drawing, words=f"backbone in the colours of {name}", keys=keys)
+    drawing = replace(drawing, words=f"backbone in the colours of {name}", keys=keys)
+    drawing = replace(drawing, notes=[*drawing.notes, *_on_ligands(case.data.run(), ligands.run())])
+    return with_molecule(case, drawing, ligands, BESIDE_CHAINS) if has_ligands else drawing
+
+
+def with_molecule(case: Case, drawing: Drawing, atoms: Step, size: float = 1.0) -> Drawing:
+    """Return a drawing with atoms and bonds beside its meshes, in the colours of elements."""
+    contents = Contents(atoms.run())
+    wishes = replace(case.wishes, frame=drawing.camera, picture={}, light={}, make_scene=None)
+    array = contents.named("atom_type")
+    beside = replace(case, data=atoms, contents=contents, array=array, wishes=wishes)
+    beside_drawing = molecule(beside, size)
+    layers = [*drawing.layers, *beside_drawing.layers]
+    # Symbols of elements need no title.
+    keys = [*drawing.keys, *(key | {"title": ""} for key in beside_drawing.keys)]
+    return replace(drawing, layers=layers, keys=keys)
+
+
+def _on_ligands(atoms: pv.DataSet, ligands: pv.DataSet) -> list[str]:
+    """Return notes on the atoms beside chains that are drawn, and on those that are left out."""
+    counts, drawn = molecules.beside_chains(atoms), set[str]()
+    if ligands.n_points:
+        names = meaning.flags(ligands, molecules.RESIDUE)
+        drawn = {names[number] for number in set(ligands[molecules.RESIDUE].tolist())}
+    notes = []
+    for words, chosen in (("beside the chains", drawn), ("left out", set(counts) - drawn)):
+        texts = [
+            f"{name} ({count} atom{'s' * (count > 1)})"
+            for name, count in counts.items()
+            if name in chosen
+        ]
+        notes += [f"{words}: {', '.join(texts)}"] if texts else []
+    return notes
 
 
 def _pen(case: Case, camera: Step) -> Keywords:

@@ -229,14 +229,8 @@ def _of_both_signs(surface: Case, array: Named, ends: tuple[float, float], words
 def _around_molecule(case: Case, drawing: Drawing) -> Drawing:
     """Return the drawing of an isosurface that lets the molecule in its volume be seen."""
     atoms = Step("atoms", "files.atoms_in", case.data)
-    contents = Contents(atoms.run())
-    wishes = replace(case.wishes, frame=drawing.camera, picture={}, light={}, make_scene=None)
-    array = contents.named("atom_type")
-    inside = lines.molecule(
-        replace(case, data=atoms, contents=contents, array=array, wishes=wishes)
-    )
     layers = [replace(each, keywords=each.keywords | CLEAR) for each in drawing.layers]
-    return replace(drawing, layers=[*layers, *inside.layers], keys=[*drawing.keys, *inside.keys])
+    return lines.with_molecule(case, replace(drawing, layers=layers), atoms)
 
 
 def _framed(case: Case, mesh: Step, *, boxed: bool) -> tuple[Case, Step | None]:
