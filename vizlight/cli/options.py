@@ -35,7 +35,7 @@ Backend = Literal["egl", "osmesa"]
 if TYPE_CHECKING:
     Question = str
 else:
-    Question = Literal[(*QUESTIONS,)]
+    Question = Literal[(*QUESTIONS, "relief")]
 Flag = Annotated[bool, Parameter(negative=(), show_default=False)]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Texts = Annotated[list[str], Parameter(allow_leading_hyphen=True, negative=())]
@@ -132,7 +132,7 @@ class Lights:
     Parameters
     ----------
     question
-        Question that the light answers, with its key.
+        Question that the light answers, with its key, or relief of a map of heights.
     key
         Draw the key of the colours and of the light beside the picture.
     light
