@@ -61,7 +61,8 @@ class FilePart:
     time
         Time of the step, or its index; first, or last, the default.
     times
-        Steps that are lit one by one: all, or indices FIRST:END or FIRST:END:STEP.
+        Steps of a movie, or that are lit one by one: all, or indices FIRST:END, such as -12:, or
+        FIRST:END:STEP.
     overlay
         File with values for the points of a surface of a brain.
     at
@@ -79,7 +80,7 @@ class FilePart:
     """
 
     time: Text | None = None
-    times: str | None = None
+    times: Text | None = None
     overlay: Overlays | None = None
     at: Texts | None = None
     nodata: float | None = None

@@ -69,6 +69,8 @@ DARK, BESIDE = "#333333", {"pickable": False}
 LONGEST_SHORT = 3
 #: Fewest and most days between steps that are months.
 MONTH = (27.5, 31.5)
+#: Most hours between steps of which a date says the hour.
+MOST_HOURS = 47.0
 #: Keywords of the edges of a box, and of what it cuts.
 BOX_EDGES: Keywords = {"color": "gray", "line_width": 1}
 #: Function that makes classes of colours.
@@ -679,7 +681,10 @@ def _dated(mesh: pv.DataSet, methods: str) -> str:
     said = meaning.of(mesh)
     times = [float(np.ravel(mesh.field_data[series.TIME])[0]), *said.span]
     date, *ends = (dates.date(time, said.time).removesuffix(" 00:00") for time in times)
-    if _are_monthly(series.of(mesh), said.time):
+    apart = _days_apart(series.of(mesh), said.time)
+    if len(apart) and apart.min() > MOST_HOURS / 24:
+        date = date[: len("2000-01-01")]
+    if len(apart) and np.all((apart > MONTH[0]) & (apart < MONTH[1])):
         date = date[: len("2000-01")] or _month(times[0], said.time)
     if not date and len(series.of(mesh)) > 1:
         unit = said.time.partition(", ")[0].partition(" since ")[0]
@@ -704,11 +709,11 @@ def _month(time: float, unit: str) -> str:
     return calendar.month_name[int(time * size / (YEAR * 86400) * 12) % 12 + 1]
 
 
-def _are_monthly(times: Sequence[float], unit: str) -> bool:
-    """Return whether steps are months apart."""
+def _days_apart(times: Sequence[float], unit: str) -> Array:
+    """Return the days from step to step, 0 where their unit is none of time."""
     seconds = dates.seconds(unit.partition(" since ")[0])
-    days = np.diff(np.asarray(times, dtype=np.float64)) * (seconds or 0.0) / 86400
-    return len(days) > 0 and bool(np.all((days > MONTH[0]) & (days < MONTH[1])))
+    days: Array = np.diff(np.asarray(times, dtype=np.float64)) * (seconds or 0.0) / 86400
+    return days
 
 
 def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:

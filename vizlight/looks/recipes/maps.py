@@ -14,7 +14,7 @@ from vizlight.looks import map_parts
 from vizlight.looks.recipes.drawing import BANDS, GROUND, Drawing, Layer, lines_every, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
-from vizlight.mesh import charts, georeference
+from vizlight.mesh import charts, georeference, meaning
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -104,7 +104,15 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     sparse = {"sparse": SPARSE_ON_RELIEF} if is_relief else {}
     smooth = None if is_relief else map_parts.smoothed(flat, array)
     ground = flat if smooth is None else smooth
-    contoured = map_parts.isolines(ground, array, ends, size, coasts, always=bool(asked), **sparse)
+    unit, _ = meaning.usual_unit(flat.run(), array.name, max(map(abs, ends)))
+    edges: Sequence[float] = ()
+    if clim is not None and not is_relief:
+        # The same at all steps of a movie, whatever lines fit into each.
+        shown = ends[0] / unit, ends[1] / unit
+        edges = classes(even_levels(*shown, map_parts.LEVELS[0]), shown)
+    contoured = map_parts.isolines(
+        ground, array, ends, size, coasts, always=bool(asked), edges=edges, **sparse
+    )
     if contoured is None:
         return drawing
     lines, levels, factor = contoured
@@ -129,7 +137,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     keys = [key | {"title": lines_every(key["title"], levels)} for key in drawing.keys]
     if not is_relief and (cmap is None or isinstance(cmap, str)):
         shown = ends[0] / factor, ends[1] / factor
-        edges = _classes(levels, shown)
+        edges = edges or classes(levels, shown)
         first_end, *inner, last_end = (float(f"{factor * edge:.12g}") for edge in edges)
         table = Step("", BANDS, inner, (first_end, last_end), *filter(None, [cmap]))
         first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
@@ -148,14 +156,14 @@ def _with_classes(case: Case, drawing: Drawing) -> Drawing:
     if not is_field or not isinstance(cmap, str) or clim is None:
         return drawing
     low, high = clim
-    edges = _classes(even_levels(low, high, MOST_CLASSES), (low, high))
+    edges = classes(even_levels(low, high, MOST_CLASSES), (low, high))
     table = Step("", BANDS, edges[1:-1], (edges[0], edges[-1]), cmap)
     first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
     of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
     return replace(drawing, layers=[first, *others], keys=[key | of_bar for key in drawing.keys])
 
 
-def _classes(levels: Sequence[float], ends: tuple[float, float]) -> list[float]:
+def classes(levels: Sequence[float], ends: tuple[float, float]) -> list[float]:
     """Return the values at which the classes of colours between isolines begin and end.
 
     Parameters
