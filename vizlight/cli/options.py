@@ -61,8 +61,7 @@ class FilePart:
     time
         Time of the step, or its index; first, or last, the default.
     times
-        Steps of a movie, or that are lit one by one: all, or indices FIRST:END, such as -12:, or
-        FIRST:END:STEP.
+        Steps one by one, or of a movie: all, or indices FIRST:END or FIRST:END:STEP.
     overlay
         File with values for the points of a surface of a brain.
     at
@@ -133,7 +132,7 @@ class Lights:
     Parameters
     ----------
     question
-        Question that the light answers, with its key, or relief of a map of heights.
+        Question that the light answers, with its key.
     key
         Draw the key of the colours and of the light beside the picture.
     light

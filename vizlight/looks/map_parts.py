@@ -153,10 +153,10 @@ def isolines(
     size = float(f"{SMALL * letters:.4g}")
     factor, _ = meaning.usual_unit(mesh.run(), array.name, max(map(abs, ends)))
     if len(edges) > 1:
-        step = edges[1] - edges[0]
+        apart = edges[1] - edges[0]
         inner = [edge for edge in edges if ends[0] < factor * edge < ends[1]]
         round_levels = [
-            [edge for edge in inner if round(edge / step) % part == 0] for part in (2, 1)
+            [edge for edge in inner if round(edge / apart) % part == 0] for part in (2, 1)
         ]
     else:
         low, high = ends[0] / factor, ends[1] / factor

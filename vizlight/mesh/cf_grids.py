@@ -106,6 +106,8 @@ FINE, LEAST_RELIEF = 0.02, 100.0
 #: Least difference of heights in metres of a map of z, the name that GMT gives to any datum, where
 #: no word of its file is one of heights: gravity and magnetism have smaller numbers.
 RELIEF_OF_Z = 1000.0
+#: Standard names of levels.
+_LEVELS = ("air_pressure", "height", "altitude", "depth")
 #: Words of heights in the names and histories of files.
 _OF_GROUND = re.compile(r"elev|topo|bathy|terrain|relief|orog|(^|[^a-z])dem([^a-z]|$)")
 #: Names of arrays that are no values on a grid: corners of cells and mappings.
@@ -184,6 +186,11 @@ def _may_be_ground(name: str, attributes: Mapping[str, str], axes: Sequence[_Axi
         is_fine and not words and (not text or "Band Number" in text)  # as GDAL writes it
         and (meaning.is_of_reader(name) or name.lower().startswith("band"))
     )  # fmt: skip
+
+
+def _are_months(name: str, ticks: Sequence[float]) -> bool:
+    """Return whether the steps of an axis without a unit are months of a year by their numbers."""
+    return "month" in name.lower() and len(ticks) > 1 and {*ticks} <= {*range(1, 13)}
 
 
 def _is_plain_z(name: str, attributes: Mapping[str, str]) -> bool:
@@ -440,6 +447,7 @@ class _Reader:
             self.said.span = []
             del self.single[clock]
         mesh = self._mesh()
+        self._say_single_level(mesh)
         if time is None and not at and _is_empty(mesh) and (clocks := self._last_with_data()):
             self.said.notes = notes
             ticking, step = self._step(time, clocks)
@@ -742,6 +750,24 @@ class _Reader:
             heights, _, scale = _up(str(along.name), along.attrs, ticks, "")
             self.said.level = scale.at(float(heights[index]))
 
+    def _say_single_level(self, mesh: pv.DataSet) -> None:
+        """Say the level of a file of one layer that names it beside its axes, as CF does."""
+        said = meaning.of(mesh)
+        levels = [
+            one
+            for one in self.file.coords.values()
+            if one.ndim == 0
+            and one.dtype.kind in "iuf"
+            and one.attrs.get("standard_name") in _LEVELS
+        ]
+        if said.level or said.section or len(levels) != 1 or len(said.axes) != 2:
+            return
+        (along,) = levels
+        ticks: Array = np.array([along.values], dtype=np.float64)
+        heights, _, scale = _up(str(along.name), along.attrs, ticks, "")
+        said.level = self.said.level = scale.at(float(heights[0]))
+        meaning.attach(mesh, said)
+
     def _say_of_array(self, name: str, variable: Foreign) -> None:
         """Say what the attributes of a variable say, and that it is at no level if it is not."""
         self.said.add_array(name, variable.attrs)
@@ -790,6 +816,8 @@ class _Reader:
         ticks = np.arange(sizes.get(clock, 1)) if along is None else np.ravel(along.values)
         ticking = [float(tick) for tick in ticks]
         self.said.time = "" if along is None else str(along.attrs.get("units", ""))
+        if clock is not None and _are_months(clock, ticking) and not self.said.time:
+            self.said.time = dates.MONTHS
         calendar = "" if along is None else str(along.attrs.get("calendar", ""))
         if calendar not in ("", "standard", "gregorian"):
             self.said.time += f", {calendar} calendar"
