@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 
 #: Width of the band beside coasts that sets them apart from dark colours, in widths of the line.
 BAND = 0.5
+#: Note on a map with coasts that are not drawn.
+TOO_COARSE = (
+    f"coasts are too coarse for maps under {map_parts.COASTS * 111:.0f} km; map_parts= draws them"
+)
 #: Colour of the ball where a globe has no data, which hides its far side.
 BALL = "whitesmoke"
 #: Colour of coasts below black strokes: a brown, unlike the blues and greens of the ground.
@@ -51,6 +55,7 @@ def furnished(case: Case, drawing: Drawing) -> Drawing:
     # Coasts that are asked for are drawn on a small map too.
     least = {"least": 0.0} if asked else {}
     coasts = map_parts.coasts(case.data, **least) if _has_coasts(case, asked=asked) else None
+    is_fine = coasts is None and asked is None and _has_coasts(case, asked=None)
     plain = _with_classes(case, drawing)
     drawing = _with_isolines(case, plain, beside, coasts)
     drawn = {"frame": case.frame, "isolines": len(drawing.layers) > len(plain.layers)}
@@ -73,6 +78,8 @@ def furnished(case: Case, drawing: Drawing) -> Drawing:
     drawn["coasts"] = coasts
     lacking = [name for name in map_parts.PARTS if case.wishes.draws(name) and not drawn[name]]
     notes = [f"not drawn on these data: {', '.join(lacking)}"] if lacking else []
+    if is_fine and map_parts.coasts(case.data, least=0.0) is not None:
+        notes.append(TOO_COARSE)
     return replace(drawing, layers=layers, notes=[*drawing.notes, *notes])
 
 
