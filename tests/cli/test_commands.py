@@ -260,6 +260,8 @@ def test_steps_without_a_flow_name_those_that_have_one(folder, done, refused):
     (folder / "all").mkdir()
     done("light", *arguments[1:2], "--for shape --times all -o all", *SMALL)
     assert len([*Path("all").glob("*.png")]) == 3
+    script = done("light", *arguments[1:2], "--for shape --times -2: -o some.gif --script", *SMALL)
+    assert "times=[0.5, 2.0]" in script.replace("\n", "")
     for asked in ("3:", "x", "all --time 1"):
         err = refused(*arguments, "--times", asked, "-o", "out")
         assert "--times: expected all, or indices of steps" in err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -157,3 +158,35 @@ def test_bad_input(warming: Path, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="data: expected a series of steps"):
         film.save(single, tmp_path / "x.gif")
     assert not (tmp_path / "x.gif").exists()
+
+
+def test_some_steps_are_shown_in_the_bands_of_all_of_them(tmp_path: Path) -> None:
+    steps = [{"T": _values(k / 2.0)} for k in range(4)]
+    xr = pytest.importorskip("xarray")
+    rows = np.stack([step["T"].reshape(SHEET[1::-1]) for step in steps])
+    coords = {
+        "time": ("time", [0, 5, 10, 15], {"units": "days since 2000-01-01 12:00"}),
+        "lat": ("lat", np.arange(7.0), {"units": "degrees_north"}),
+        "lon": ("lon", np.arange(9.0), {"units": "degrees_east"}),
+    }
+    path = tmp_path / "a.nc"
+    xr.Dataset({"T": (("time", "lat", "lon"), rows)}, coords).to_netcdf(path)
+    look = vizlight.look(path, size=(480, 360))
+    chosen = replace(look, wishes=replace(look.wishes, steps=[5.0, 10.0]))
+    options = _options(chosen, tmp_path / "x.gif")
+    assert options["times"] == [5.0, 10.0]
+    low, high = options["clim"]
+    assert low <= rows[1:3].min() < rows[1:3].max() <= high
+    options.pop("times")
+    edges = []
+    for time in (5.0, 10.0):
+        frame = vizlight.look(path, time=time, **options)
+        assert "12:00" not in frame.drawing.keys[0]["title"]
+        (lines,) = {
+            layer.mesh.arguments[0] for layer in frame.drawing.layers if layer.mesh.path == "[]"
+        }
+        edges.append(frame.drawing.keys[0]["levels"])
+        assert {*lines.arguments[2]} <= {*edges[-1]}
+    assert edges[0] == edges[1]
+    with pytest.raises(ValueError, match="times: expected some of 0, 5, 10, 15"):
+        film.save(path, tmp_path / "x.gif", times=[1.5])

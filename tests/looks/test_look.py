@@ -750,3 +750,45 @@ def test_a_surface_of_four_coordinates_is_not_folded_onto_itself():
     look = vizlight.look(mesh, size=SIZE)
     assert look.array == "heat"
     np.testing.assert_allclose(look.mesh.points, image, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("time", "attributes", "words", "end"),
+    [
+        (("month", [1, 7], {}), {}, {}, ", July"),
+        (("month", [1, 17], {}), {}, {}, ", t = 17"),
+        (("time", [31.0, 59.0, 90.0], {"units": "days since 1970-01-01"}), {},
+         {"long_name": "Monthly Long Term mean"}, ", April"),
+        (("time", [31.0, 59.0, 90.0], {"units": "days since 1970-01-01"}), {}, {}, ", 1970-04"),
+        ((), {"time": ((), 43200.0, {"units": "seconds since 0001-01-01"})}, {}, ""),
+        ((), {"time": ((), 0.5, {"units": "days since 2001-01-01"})}, {}, ", 2001-01-01 12:00"),
+        ((), {"p": ((), 2e4, {"units": "Pa", "standard_name": "air_pressure"})}, {}, " at 200 hPa"),
+        ((), {"h": ((), 2.0, {"units": "m", "standard_name": "height"})}, {}, " at 2 m"),
+        ((), {"h": ((), 2.0, {"units": "m"})}, {}, ""),
+    ],
+)  # fmt: skip
+def test_a_title_has_the_month_the_date_or_the_level_that_a_file_tells(
+    time, attributes, words, end
+):
+    xr = pytest.importorskip("xarray")
+    rows = np.add.outer(np.arange(4.0), np.arange(5.0) ** 2)
+    coords = {"lat": 40 + np.arange(4.0), "lon": 10 + np.arange(5.0)} | attributes
+    dims = ("lat", "lon")
+    if time:
+        name, ticks, of_ticks = time
+        coords[name] = (name, ticks, of_ticks)
+        dims, rows = (name, *dims), np.stack([rows + k for k in ticks])
+    data = xr.Dataset({"t": (dims, rows, words)}, coords)
+    title = vizlight.look(data, size=SIZE).drawing.keys[0]["title"]
+    name = words.get("long_name", "t")
+    assert title.partition(";")[0] == f"{name}{end}"
+
+
+def test_a_note_on_the_last_step_has_its_date(tmp_path):
+    xr = pytest.importorskip("xarray")
+    rows = np.arange(40.0).reshape(2, 4, 5)
+    clock = ("time", [0.0, 1.5e9], {"units": "seconds since 1970-01-01"})
+    coords = {"time": clock, "lat": np.arange(4.0), "lon": np.arange(5.0)}
+    xr.Dataset({"t": (("time", "lat", "lon"), rows)}, coords).to_netcdf(tmp_path / "a.nc")
+    notes = vizlight.look(tmp_path / "a.nc", size=SIZE).notes
+    assert notes[0].startswith("time 2017-07-14 02:40, the last of 2 steps")

@@ -7,6 +7,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
+from vizlight import cartography
 from vizlight.draw.cameras import MARGIN
 from vizlight.draw.margins import LETTERS
 from vizlight.looks.recipes import reliefs
@@ -317,3 +318,23 @@ def test_a_relief_of_the_whole_earth_is_bent_once_it_is_lit(tmp_path):
     assert look.others[0].python == "globe=True"
     # A page has the data, not only the frame.
     assert look.steps(tmp_path / "a.html")[-1][-1].path == "vizlight.live_html"
+
+
+@pytest.mark.parametrize(
+    ("west", "south", "side", "keywords", "said"),
+    [
+        (-10.0, 49.0, 10.0, {}, True),
+        (-10.0, 49.0, 10.0, {"map_parts": ("coasts",)}, False),
+        (-10.0, 49.0, 10.0, {"map_parts": ()}, False),
+        (-10.0, 40.0, 30.0, {}, False),
+        (-150.0, 10.0, 5.0, {}, False),
+    ],
+)
+def test_coasts_that_are_too_coarse_are_said_to_be_so(west, south, side, keywords, said):
+    grid = pv.ImageData(
+        dimensions=(11, 11, 1), spacing=(side / 10, side / 10, 1), origin=(west, south, 0)
+    )
+    grid["t"] = grid.points[:, 0] * 2 + grid.points[:, 1] ** 2
+    grid = cartography.in_degrees(grid)
+    notes = vizlight.look(grid, size=SIZE, **keywords).notes
+    assert any("too coarse for maps under 2220 km" in note for note in notes) == said

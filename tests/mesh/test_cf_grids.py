@@ -428,6 +428,31 @@ def test_an_only_array_without_a_name_on_a_fine_map_is_of_the_ground(
         assert "taken for heights" in meaning.line(mesh)
 
 
+@pytest.mark.parametrize(
+    ("words", "title", "high", "step", "unit"),
+    [
+        ({"long_name": "z"}, "", 2000, 1 / 60, "degree"),
+        ({}, "", 2000, 5000.0, "metre"),
+        ({}, "grdreformat elevation.nc", 300, 5000.0, "metre"),
+        ({}, "", 300, 5000.0, ""),
+        ({}, "", 2000, 1.0, ""),
+        ({"long_name": "Geopotential"}, "", 2000, 1 / 60, ""),
+        ({"units": "mGal"}, "", 2000, 1 / 60, ""),
+    ],
+)
+def test_z_is_a_ground_by_its_range_or_by_words_of_its_file(words, title, high, step, unit):
+    rows = high * np.linspace(-1, 1, 40).reshape(5, 8)
+    rows[0, :3] = np.nan
+    coords = {"y": step * np.arange(5), "x": step * np.arange(8)}
+    data = xr.Dataset({"z": (("y", "x"), rows, words)}, coords, {"history": title})
+    mesh = vizlight.read(data)
+    heights = meaning.of(mesh).arrays.get("z", {}).get("long_name") == "elevation"
+    assert heights == bool(unit)
+    if unit:
+        assert mesh.field_data["unit"][0] == unit
+        assert vizlight.look(data, size=(90, 60)).question == "relief"
+
+
 @pytest.mark.parametrize("kind", ["f2", "longdouble", "O", ">f4"])
 def test_numbers_of_types_that_vtk_lacks(kind):
     rows = np.arange(20.0).reshape(4, 5)

@@ -447,6 +447,10 @@ def test_points_of_a_lidar(tmp_path, name):
     np.testing.assert_allclose(mesh.points, places, atol=0.005)
     assert mesh["intensity"].tolist() == [3, 9]
     assert mesh["color"].tolist() == [[255, 1, 0], [0, 2, 255]]
+    assert vizlight.look(mesh, size=(90, 60)).array == "color"
+    cloud.red, cloud.green, cloud.blue = np.zeros((3, 2), np.uint16)
+    cloud.write(tmp_path / name)
+    assert vizlight.look(tmp_path / name, size=(90, 60)).array == "intensity"
 
 
 def test_a_step_of_a_file_that_has_none(tmp_path):

@@ -5,7 +5,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight.mesh import meaning
+from vizlight.mesh import georeference, meaning
 
 rasterio = pytest.importorskip("rasterio")
 from rasterio.crs import CRS  # noqa: E402
@@ -227,3 +227,13 @@ def test_pages_of_several_sizes_are_told(tmp_path):
     path = pages(tmp_path / "a.tif", [np.zeros((4, 5), "u1"), np.zeros((3, 5), "u1")])
     with pytest.warns(UserWarning, match="the first of 2 pages is read"):
         assert vizlight.read(path).dimensions == (5, 4, 1)
+
+
+def test_a_raster_of_heights_without_a_system_is_in_metres(tmp_path):
+    head = "ncols 4\nnrows 3\nxllcorner 361015\nyllcorner 70223\ncellsize 10\n"
+    rows = "\n".join(" ".join(f"{9.5 * i + j:g}" for j in range(4)) for i in range(3))
+    (tmp_path / "a.asc").write_text(head + rows)
+    mesh = vizlight.read(tmp_path / "a.asc")
+    assert georeference.unit_of(mesh) == "metre"
+    assert meaning.of(mesh).arrays["elevation"]["units"] == "m"
+    assert "taken for metres" in meaning.line(mesh)

@@ -81,7 +81,7 @@ class Command:
             expected = "one time for several files in one picture"
             raise value_error("times", expected, self.part.times, "pass --time")
         groups = [list(paths)] if joined else [[path] for path in paths]
-        _check_output(out, several=len(groups) > 1 or self.part.times is not None)
+        _check_output(out, several=len(groups) > 1 or self._is_by_step)
         stems = [path.stem for path in paths]
         for twice in (name for name in stems if not joined and stems.count(name) > 1):
             expected = "files of different names, after which the outputs are named"
@@ -92,9 +92,9 @@ class Command:
             try:
                 # A file that is refused has no notes.
                 with notes_at_end():
-                    for i, time in enumerate([None] if joined else times(group[0], self.part)):
+                    for i, time in enumerate([None] if joined else self._times(group[0])):
                         look = self._look(group, time)
-                        ending = self.stem if self.part.times is None else f"{self.stem}-{i:04d}"
+                        ending = self.stem if not self._is_by_step else f"{self.stem}-{i:04d}"
                         outputs = _outputs(look, f"{group[0].stem}-{ending}", out, paths)
                         if out.script:
                             last = [step for steps in outputs for step in steps]
@@ -113,6 +113,20 @@ class Command:
             say(source(scripts))
         return max(codes)
 
+    @property
+    def _is_by_step(self) -> bool:
+        """Whether steps are lit one by one, and are not those of a movie."""
+        from vizlight.looks.look import MOVIES
+
+        named = self.out.output or ()
+        are_movies = bool(named) and all(path.suffix.lower() in MOVIES for path in named)
+        return self.part.times is not None and not are_movies
+
+    def _times(self, path: Path) -> list[float | str | None]:
+        """Return the times of the steps of a file that are lit: of a movie that of the first."""
+        every = times(path, self.part)
+        return every if self._is_by_step else every[:1]
+
     def _look(self, paths: Sequence[Path], time: float | str | None) -> Look:
         """Return the look of a file at a time, or of several in one picture."""
         from vizlight.looks.look import decide
@@ -123,6 +137,9 @@ class Command:
         only = len(paths) == 1
         source_words = [] if self.recipe is None or not only else [str(paths[0]), *self.recipe]
         wishes = replace(self.wishes, part=part, source=source_words)
+        if self.part.times is not None and not self._is_by_step:
+            steps = [step for step in times(paths[0], self.part) if isinstance(step, float)]
+            wishes = replace(wishes, steps=steps)
         return decide(paths[0] if only else list(paths), wishes)
 
     def _run(self, look: Look, outputs: Sequence[Sequence[Step]]) -> int:
@@ -208,7 +225,7 @@ def _check_output(out: Output, *, several: bool) -> None:
         if several and not path.is_dir():
             expected = "a folder that exists, for several files or steps"
             is_movie = path.suffix.lower() in MOVIES
-            remedy = "a movie shows all steps of a series without --times" if is_movie else ""
+            remedy = "name movies alone, or none" if is_movie else ""
             raise files.FileError(message("output", expected, f"'{path}'", remedy))
         if not path.is_dir():
             files.check_output(path, FORMATS)

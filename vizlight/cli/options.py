@@ -35,7 +35,7 @@ Backend = Literal["egl", "osmesa"]
 if TYPE_CHECKING:
     Question = str
 else:
-    Question = Literal[(*QUESTIONS,)]
+    Question = Literal[(*QUESTIONS, "relief")]
 Flag = Annotated[bool, Parameter(negative=(), show_default=False)]
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 Texts = Annotated[list[str], Parameter(allow_leading_hyphen=True, negative=())]
@@ -61,7 +61,7 @@ class FilePart:
     time
         Time of the step, or its index; first, or last, the default.
     times
-        Steps that are lit one by one: all, or indices FIRST:END or FIRST:END:STEP.
+        Steps one by one, or of a movie: all, or indices FIRST:END or FIRST:END:STEP.
     overlay
         File with values for the points of a surface of a brain.
     at
@@ -79,7 +79,7 @@ class FilePart:
     """
 
     time: Text | None = None
-    times: str | None = None
+    times: Text | None = None
     overlay: Overlays | None = None
     at: Texts | None = None
     nodata: float | None = None

@@ -448,7 +448,7 @@ def _writer(path: Path, fps: float, size: object) -> Callable[[Iterator[Picture]
         return lambda pictures: _write_sequence(path, pictures)
     _need("imageio")
     # Milliseconds of a frame, and no end to the repetitions.
-    options = {"duration": 1000 / fps, "loop": 0}
+    options: dict[str, float | str] = {"duration": 1000 / fps, "loop": 0}
     if path.suffix.lower() == ".mp4":
         _need("imageio_ffmpeg")
         # The films that all players show hold colour at half the width and the height.
@@ -456,7 +456,7 @@ def _writer(path: Path, fps: float, size: object) -> Callable[[Iterator[Picture]
             expected = "an even width and height for MP4"
             raise _check.value_error("size", expected, f"{pixels[0]}x{pixels[1]}")
         # By default imageio scales a picture to multiples of 16 pixels, which blurs thin lines.
-        options = {"fps": fps, "macro_block_size": 2}
+        options = {"fps": fps, "macro_block_size": 2, "ffmpeg_log_level": "error"}
     return lambda pictures: [replace_file(path, lambda to: _write_movie(to, pictures, options))]
 
 
@@ -484,7 +484,9 @@ def _write_sequence(path: Path, pictures: Iterable[Picture]) -> list[Path]:
     return files
 
 
-def _write_movie(path: str, pictures: Iterable[Picture], options: Mapping[str, float]) -> None:
+def _write_movie(
+    path: str, pictures: Iterable[Picture], options: Mapping[str, float | str]
+) -> None:
     """Write the pictures one by one, so that memory does not grow with their number."""
     import imageio.v2
 

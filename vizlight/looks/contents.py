@@ -13,6 +13,7 @@ import pyvista as pv
 from vizlight.maps import MOST_SPAN
 from vizlight.mesh import blocks, meaning, records, stresses
 from vizlight.vtk.arrays import are_colors
+from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -257,6 +258,15 @@ def says_heights(mesh: pv.DataSet, name: str) -> bool:
         Name of the array.
     """
     return _HEIGHTS.search(f"{name.lower()} {_words_of(mesh, name)}") is not None
+
+
+def may_be_ground(contents: Contents, array: Named) -> bool:
+    """Return whether values of a grid, of no unit or one of a length, can be those of a ground."""
+    mesh = contents.mesh
+    words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
+    is_grid = contents.flat_axis == 2 and sum(size > 1 for size in dimensions(mesh)) == 2
+    is_length = array.role in ("values", "heights") and _is_length(mesh, array.name)
+    return is_grid and is_length and not array.of_cells and not _NO_GROUND.search(words)
 
 
 def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...]:

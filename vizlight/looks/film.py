@@ -15,12 +15,22 @@ import vizlight
 from vizlight import _check, files
 from vizlight._types import Array, Foreign, Given, Keywords
 from vizlight.draw import movie
+from vizlight.draw.ticks import even_levels
+from vizlight.looks import map_parts
 from vizlight.looks import options as look_options
 from vizlight.looks.contents import Contents
 from vizlight.looks.options import READ
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.recipes import fields
-from vizlight.looks.recipes.drawing import GROUND, ON_BANDS, ON_GROUND, Layer, colors_in
+from vizlight.looks.recipes.drawing import (
+    BANDS,
+    GROUND,
+    ON_BANDS,
+    ON_GROUND,
+    Layer,
+    colors_in,
+)
+from vizlight.looks.recipes.maps import classes
 from vizlight.looks.steps import Step, in_order
 from vizlight.looks.wishes import Wishes
 from vizlight.mesh import meaning, series
@@ -51,6 +61,7 @@ def save(
     *,
     fps: float | None = None,
     per_step: int = 1,
+    times: Sequence[float] | None = None,
     progress_bar: bool = False,
     **options: Given,
 ) -> list[Path]:
@@ -73,6 +84,8 @@ def save(
         Pictures from step to step, if strokes of a flat field or of one in a volume are drawn: they
         are carried by vectors linear in time, and keep their places from picture to picture. On
         other data the pictures of a step are alike.
+    times : sequence of float, optional
+        Times of the steps that are shown. Default: those of all.
     progress_bar : bool, default: False
         Show progress on standard error.
     **options
@@ -91,12 +104,15 @@ def save(
     read = {name: options[name] for name in READ if name in options}
     if "time" in read:
         raise _check.value_error("time", "none beside a movie of all steps", "one")
-    times = series.of(files.read(data, **read))
-    if not times:
+    every = series.of(files.read(data, **read))
+    if not every:
         raise _check.value_error("data", "a series of steps", "one mesh")
+    chosen = every if times is None else [float(time) for time in times]
+    if not chosen or not {*chosen} <= {*every}:
+        raise _check.value_error("times", f"some of {series.listed(every)}", repr(times))
     _check.integer("per_step", per_step, low=1, high=100)
-    fps = _pace(times) if fps is None else _check.number("fps", fps, low=0.01, high=100.0)
-    pictures = _Pictures(_looks(data, question, times, options), times, per_step)
+    fps = _pace(chosen) if fps is None else _check.number("fps", fps, low=0.01, high=100.0)
+    pictures = _Pictures(_looks(data, question, chosen, options), chosen, per_step)
     return movie.save(pictures, path, fps=fps * per_step, progress_bar=progress_bar)
 
 
@@ -274,14 +290,17 @@ def step(look: vizlight.Look, path: Path) -> Step | None:
         Path of the movie.
     """
     reads = [each for each in in_order([look.drawing.lit]) if each.path == "vizlight.read"]
-    if len(reads) != 1 or reads[0].keywords.get("time") is not None:
+    chosen = look.wishes.steps
+    if len(reads) != 1 or (reads[0].keywords.get("time") is not None and not chosen):
         return None
     read = reads[0]
-    times = series.of(read.run())
+    times = chosen or series.of(read.run())
     if len(times) < 2:
         return None
     question = [look.wishes.question] if look.wishes.question != "auto" else []
     options = _settings(look, read, times)
+    if chosen:
+        options["times"] = [*chosen]
     if _Flow.of(look) is not None and (count := round(FASTEST / _pace(times))) > 1:
         options["per_step"] = count
     saved = Step("", "film.save", read.arguments[0], path, *question, **options)
@@ -300,7 +319,8 @@ def _settings(look: vizlight.Look, read: Step, times: Sequence[float]) -> Keywor
     wishes, drawing = look.wishes, look.drawing
     groups = {**wishes.part, **wishes.light, **wishes.eye, **wishes.picture}
     options: Keywords = {name: value for name, value in groups.items() if value is not None}
-    options.pop("frames", None)
+    for name in ("frames", "time"):
+        options.pop(name, None)
     if not options.get("globe"):
         options.pop("globe", None)
     for name in ("view", "size", "style"):
@@ -311,6 +331,14 @@ def _settings(look: vizlight.Look, read: Step, times: Sequence[float]) -> Keywor
         if wishes.make_scene is not None or drawing.scene.path == ".replace":
             # The light of one step is that of all.
             options["scene"] = drawing.scene
+    drawn = [
+        name
+        for name in map_parts.PARTS
+        if any(map_parts.is_of(name, layer.mesh) for layer in drawing.layers)
+    ]
+    if "isolines" in drawn:
+        # So that each step has them.
+        options.setdefault("map_parts", drawn)
     array = look.array
     for each in in_order([drawing.lit]):
         if each.keywords.get("level") is not None:
@@ -347,6 +375,8 @@ def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str)
     has_ground = isinstance(drawn, Step) and GROUND in drawn.keywords.values()
     every = np.concatenate(values)
     unit, _ = meaning.usual_unit(read.run(), array, float(np.abs(every).max()))
+    if isinstance(drawn, Step) and drawn.path == BANDS and not (vectors or has_ground):
+        return _in_bands(every / unit, unit)
     shown = range_shown(every / unit, lengths=vectors, amounts=has_ground)
     shown = shown.around_zero(every / unit) if shown.is_signed else shown
     if shown.words(array):
@@ -357,3 +387,18 @@ def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str)
     step = 10.0 ** np.floor(np.log10((shown.high - shown.low) / FINE or 1.0))
     ends = np.floor(shown.low / step) * step, np.ceil(shown.high / step) * step
     return {"clim": tuple(float(f"{end:.9g}") for end in ends)}
+
+
+def _in_bands(values: Array, unit: float) -> Keywords:
+    """Return the range of the bands between isolines that hold the values of all steps.
+
+    Parameters
+    ----------
+    values : ndarray
+        Values in the unit in which they are read.
+    unit : float
+        This unit, in that of the array.
+    """
+    ends = float(values.min()), float(values.max())
+    edges = classes(even_levels(*ends, map_parts.LEVELS[0]), ends)
+    return {"clim": (float(f"{unit * edges[0]:.12g}"), float(f"{unit * edges[-1]:.12g}"))}

@@ -20,7 +20,7 @@ from vizlight.draw.render import IMAGES, BackendError
 from vizlight.draw.vector import VECTORS
 from vizlight.looks import film, map_parts, together
 from vizlight.looks import options as look_options
-from vizlight.looks.contents import Contents
+from vizlight.looks.contents import Contents, may_be_ground
 from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces
 from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
@@ -833,6 +833,8 @@ def _others(contents: Contents, case: Case, drawn: str) -> tuple[Other, ...]:
     ]
     if drawn == "isosurface":
         others.insert(0, Other("value", None, "question='value'", "--for value"))
+    if case.question == "none" and case.array is not None and may_be_ground(contents, case.array):
+        others.insert(0, Other("relief", None, "question='relief'", "--for relief"))
     is_shape = case.wishes.question == "shape" and drawn != "slices"
     if not is_shape and contents.flat_axis is None and contents.dimension > 1:
         others.append(Other("shape", None, "question='shape'", "--for shape"))

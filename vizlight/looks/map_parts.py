@@ -72,6 +72,14 @@ def named(parts: object) -> tuple[str, ...]:
     return tuple(names)
 
 
+def is_of(part: str, mesh: Step) -> bool:
+    """Return whether a step makes a part of a map, or one mesh of it."""
+    return any(
+        isinstance(step, Step) and step.path == f"vizlight.cartography.{part}"
+        for step in (mesh, *mesh.arguments[:1])
+    )
+
+
 def frame(mesh: Step, wishes: Wishes, up: Sequence[float]) -> Step | None:
     """Return the step that makes the frame of a map, None if it gets none."""
     if not 0 < max(mesh.run().bounds_size[:2]) < np.inf:
@@ -114,6 +122,7 @@ def isolines(
     *,
     sparse: float = SPARSE,
     always: bool = False,
+    edges: Sequence[float] = (),
 ) -> tuple[Step, list[float], float] | None:
     """Return the step that makes the isolines of a map, their levels as written, and their unit.
 
@@ -135,16 +144,25 @@ def isolines(
         Least distance between lines, in heights of their letters.
     always : bool, default: False
         Whether a field that is not smooth gets lines too, as few as there can be.
+    edges : sequence of float
+        Values in even steps at which colours change, in the unit in which they are read, of which
+        all, or every second one, are the levels. Default: round values.
     """
     if mesh.run().n_points > MOST_POINTS:
         return None
     size = float(f"{SMALL * letters:.4g}")
     factor, _ = meaning.usual_unit(mesh.run(), array.name, max(map(abs, ends)))
+    if len(edges) > 1:
+        apart = edges[1] - edges[0]
+        inner = [edge for edge in edges if ends[0] < factor * edge < ends[1]]
+        round_levels = [
+            [edge for edge in inner if round(edge / apart) % part == 0] for part in (2, 1)
+        ]
+    else:
+        low, high = ends[0] / factor, ends[1] / factor
+        round_levels = [ticks.even_levels(low, high, most) for most in LEVELS]
     choices = [
-        {float(f"{factor * level:.12g}"): level for level in levels}
-        for levels in (
-            ticks.even_levels(ends[0] / factor, ends[1] / factor, most) for most in LEVELS
-        )
+        {float(f"{factor * level:.12g}"): level for level in levels} for levels in round_levels
     ]
     levels = np.array(sorted({*choices[0], *choices[1]}))
     # With room to spare, since isolines of some levels are longer than those of others.

@@ -150,6 +150,8 @@ class Wishes:
         Step of a camera that several meshes share.
     wide : bool
         Whether a map is so wide that its key lies below it.
+    steps : sequence of float
+        Times of the steps of a movie. Default: all.
     source : sequence of str
         File, and options of the command that shows it alike, which a page copies.
     """
@@ -168,6 +170,7 @@ class Wishes:
     refine: float | None = None
     frame: Step | None = None
     wide: bool = False
+    steps: Sequence[float] = ()
     source: Sequence[str] = ()
 
     @property

@@ -103,6 +103,13 @@ _DEPTHS = r"(sea_floor_depth|depth).*|.*_depth(_below.*)?"
 #: Largest step of a map of the ground in degrees, and least difference of its heights in metres:
 #: finer maps of one variable without a name are mostly of the ground.
 FINE, LEAST_RELIEF = 0.02, 100.0
+#: Least difference of heights in metres of a map of z, the name that GMT gives to any datum, where
+#: no word of its file is one of heights: gravity and magnetism have smaller numbers.
+RELIEF_OF_Z = 1000.0
+#: Standard names of levels.
+_LEVELS = ("air_pressure", "height", "altitude", "depth")
+#: Words of heights in the names and histories of files.
+_OF_GROUND = re.compile(r"elev|topo|bathy|terrain|relief|orog|(^|[^a-z])dem([^a-z]|$)")
 #: Names of arrays that are no values on a grid: corners of cells and mappings.
 _ASIDE = re.compile(r".*(_bnds|_bounds|_vertices)|crs|spatial_ref", re.IGNORECASE)
 
@@ -158,11 +165,19 @@ class _Axis:
     kind: str
     scale: meaning.AxisScale
 
+    @property
+    def is_count(self) -> bool:
+        """Whether its coordinates are the numbers of its places, from 0 or 1 on."""
+        count = self.ticks[0] + np.arange(len(self.ticks))
+        return self.ticks[0] in (0, 1) and bool(np.array_equal(self.ticks, count))
+
 
 def _may_be_ground(name: str, attributes: Mapping[str, str], axes: Sequence[_Axis]) -> bool:
-    """Return whether values on a fine map in degrees have a name that says nothing."""
+    """Return whether the name of values says nothing: on a fine map in degrees, or z on any."""
     words = {"units", "standard_name"} & attributes.keys()
     text = str(attributes.get("long_name", ""))
+    if _is_plain_z(name, attributes):
+        return not all(axis.kind == "index" and axis.is_count for axis in axes)
     is_fine = all(
         axis.kind == "degrees" and np.ptp(axis.ticks) < FINE * (len(axis.ticks) - 1)
         for axis in axes
@@ -171,6 +186,17 @@ def _may_be_ground(name: str, attributes: Mapping[str, str], axes: Sequence[_Axi
         is_fine and not words and (not text or "Band Number" in text)  # as GDAL writes it
         and (meaning.is_of_reader(name) or name.lower().startswith("band"))
     )  # fmt: skip
+
+
+def _are_months(name: str, ticks: Sequence[float]) -> bool:
+    """Return whether the steps of an axis without a unit are months of a year by their numbers."""
+    return "month" in name.lower() and len(ticks) > 1 and {*ticks} <= {*range(1, 13)}
+
+
+def _is_plain_z(name: str, attributes: Mapping[str, str]) -> bool:
+    """Return whether an array is called z, as by GMT, and nothing else is said of it."""
+    words = {"units", "standard_name"} & attributes.keys()
+    return name.lower() == "z" and not words and attributes.get("long_name", "z").lower() == "z"
 
 
 def is_grid(value: object) -> bool:
@@ -421,6 +447,7 @@ class _Reader:
             self.said.span = []
             del self.single[clock]
         mesh = self._mesh()
+        self._say_single_level(mesh)
         if time is None and not at and _is_empty(mesh) and (clocks := self._last_with_data()):
             self.said.notes = notes
             ticking, step = self._step(time, clocks)
@@ -723,6 +750,24 @@ class _Reader:
             heights, _, scale = _up(str(along.name), along.attrs, ticks, "")
             self.said.level = scale.at(float(heights[index]))
 
+    def _say_single_level(self, mesh: pv.DataSet) -> None:
+        """Say the level of a file of one layer that names it beside its axes, as CF does."""
+        said = meaning.of(mesh)
+        levels = [
+            one
+            for one in self.file.coords.values()
+            if one.ndim == 0
+            and one.dtype.kind in "iuf"
+            and one.attrs.get("standard_name") in _LEVELS
+        ]
+        if said.level or said.section or len(levels) != 1 or len(said.axes) != 2:
+            return
+        (along,) = levels
+        ticks: Array = np.array([along.values], dtype=np.float64)
+        heights, _, scale = _up(str(along.name), along.attrs, ticks, "")
+        said.level = self.said.level = scale.at(float(heights[0]))
+        meaning.attach(mesh, said)
+
     def _say_of_array(self, name: str, variable: Foreign) -> None:
         """Say what the attributes of a variable say, and that it is at no level if it is not."""
         self.said.add_array(name, variable.attrs)
@@ -771,6 +816,8 @@ class _Reader:
         ticks = np.arange(sizes.get(clock, 1)) if along is None else np.ravel(along.values)
         ticking = [float(tick) for tick in ticks]
         self.said.time = "" if along is None else str(along.attrs.get("units", ""))
+        if clock is not None and _are_months(clock, ticking) and not self.said.time:
+            self.said.time = dates.MONTHS
         calendar = "" if along is None else str(along.attrs.get("calendar", ""))
         if calendar not in ("", "standard", "gregorian"):
             self.said.time += f", {calendar} calendar"
@@ -1072,7 +1119,10 @@ class _Reader:
         low, high = float(np.nanmin(rows)), float(np.nanmax(rows))
         unit = "m" if high < georeference.HIGHEST else "ft"
         scale = meaning.metres(unit) or 1.0
-        is_relief = -georeference.DEEPEST < scale * low < scale * high - LEAST_RELIEF
+        texts = [Path(self.source).name, *map(str, self.file.attrs.values())]
+        words = _OF_GROUND.findall(" ".join(texts).lower())
+        least = RELIEF_OF_Z if _is_plain_z(name, said) and not words else LEAST_RELIEF
+        is_relief = -georeference.DEEPEST < scale * low < scale * high - least
         if not is_relief or scale * high > georeference.HIGHEST:
             return said
         self.said.notes.append(f"{name!r} has no name or unit, and is taken for heights in {unit}")
@@ -1118,6 +1168,9 @@ class _Reader:
         ):
             unit = georeference.DEGREE
             self.said.notes.append("x and y taken for degrees by their ranges")
+        elif kinds == {"index"} and self.said.arrays.get("z", {}).get("units") == "m":
+            unit = "metre"
+            self.said.notes.append("x and y taken for metres, as heights are")
         else:
             return
         grid.field_data[georeference.UNIT] = [unit]

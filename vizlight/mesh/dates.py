@@ -33,6 +33,8 @@ _ROUND = (
 )
 #: Number of parts of a range: dates that differ by less are one.
 _FINEST = 1 << 30
+#: Unit of the numbers of months of no year, from 1 to 12.
+MONTHS = "month of a year"
 #: Unit of times that are dates themselves, such as 20010215.5.
 _ABSOLUTE = "day as %Y%m%d"
 #: Unit and first day of times, such as "hours since 1900-1-1T6:00:00.0 +1:00".

@@ -454,6 +454,9 @@ def _lidar(path: Path) -> pv.PolyData:
         # Colours have 16 bits by the standard, and 8 by many writers.
         depth = 256 if colors.max(initial=0) > 255 else 1
         mesh.point_data["color"] = (colors // depth).astype(np.uint8)
+        if np.any(colors):
+            # A scan looks like the place that it is of.
+            mesh.point_data.active_scalars_name = "color"
     return mesh
 
 

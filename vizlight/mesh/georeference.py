@@ -416,6 +416,11 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
     elif seem_degrees(grid, next(iter(arrays))):
         grid.field_data[UNIT] = [DEGREE]
         said.notes.append("taken for degrees by their ranges")
+    elif "elevation" in arrays and not on_page and not units.get("elevation"):
+        # Coordinates and heights of one unit, which it mostly is.
+        grid.field_data[UNIT] = ["metre"]
+        said.add_array("elevation", {"units": "m"})
+        said.notes.append("lengths and heights taken for metres")
     meaning.attach(grid, said)
     return grid
 

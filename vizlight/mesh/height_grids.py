@@ -24,8 +24,8 @@ REMEDY = "pass raster=0 to sample it on an even grid, or its surface with thickn
 #: Least side of a terrain, largest height as a share of it, least number of its slopes, and the
 #: step in which these differ.
 WIDE, MOST_HIGH, MANY, SLOPE = 100.0, 0.5, 50, 0.01
-#: Number of faces that are looked at first.
-SAMPLE = 2000
+#: Number of faces that are looked at first, and most of those whose slopes are.
+SAMPLE, MOST_STEEP = 2000, 200_000
 #: Largest number of nodes of a raster.
 LARGEST = 1 << 28
 
@@ -289,9 +289,39 @@ def is_terrain(surface: pv.DataSet) -> bool:
     return _look_alike(every) and area <= 2 * wide * long * (1 + LEVEL)
 
 
+def steep(mesh: pv.DataSet, heights: str, share: float) -> float:
+    """Return the slope, as rise over run, that a share of a map does not exceed; 0 without faces.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+        Level mesh; one in degrees is taken in metres.
+    heights : str
+        Name of a point array of one component.
+    share : float
+        Share of a sample of its triangles, from 0 to 1.
+    """
+    flat = georeference.in_metres(mesh)
+    triangles = subdivision.simplices(flat)
+    if not len(triangles) or triangles.shape[1] < 3:
+        return 0.0
+    points: Array = np.array(points_of(flat, None)[:], dtype=np.float64)
+    points[:, 2] = flat.point_data[heights]
+    normals = _normals(points, triangles[:: 1 + len(triangles) // MOST_STEEP])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slopes = np.hypot(normals[:, 0], normals[:, 1]) / np.abs(normals[:, 2])
+    slopes = slopes[np.isfinite(slopes)]
+    return float(np.quantile(slopes, share)) if len(slopes) else 0.0
+
+
 def _areas(surface: pv.PolyData, triangles: Indices) -> Array:
     """Return vectors along the normals of triangles, twice as long as their areas."""
-    first, second, third = np.asarray(surface.points, dtype=np.float64)[triangles.T]
+    return _normals(np.asarray(surface.points, dtype=np.float64), triangles)
+
+
+def _normals(points: Array, triangles: Indices) -> Array:
+    """Return vectors along the normals of triangles of points, twice as long as their areas."""
+    first, second, third = points[triangles.T]
     return np.asarray(np.cross(second - first, third - first))
 
 

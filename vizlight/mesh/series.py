@@ -245,7 +245,7 @@ def note(mesh: pv.DataSet) -> str:
     if len(times) < 2:
         return ""
     when = dates.date(times[-1], meaning.of(mesh).time)
-    last = f"time {times[-1]:g}{f' ({when})' * bool(when)}, the last of {len(times)} steps"
+    last = f"time {when or format(times[-1], 'g')}, the last of {len(times)} steps"
     return f"{last}; --time takes another, --times all of them one by one"
 
 

@@ -70,6 +70,8 @@ DARK, BESIDE = "#333333", {"pickable": False}
 LONGEST_SHORT = 3
 #: Fewest and most days between steps that are months.
 MONTH = (27.5, 31.5)
+#: Most hours between steps of which a date says the hour.
+MOST_HOURS = 47.0
 #: Keywords of the edges of a box, and of what it cuts.
 BOX_EDGES: Keywords = {"color": "gray", "line_width": 1}
 #: Function that makes classes of colours.
@@ -82,6 +84,9 @@ ON_BOX, CUT = 1e-3, 0.95
 OVER_TIME = re.compile(r"\btime: (mean|maximum|minimum|median|sum|variance)\b(?! within)")
 #: Names of velocities, in lower case.
 VELOCITY = re.compile(r"u|v|vel|u,v(,w)?|uvw?|vectors?|.*(veloc|vitesse|wi?nd|flow|current).*")
+#: Start of dates that are no dates, and words of means of many years, whose steps are of no year.
+NO_DATE = ("0000-", "0001-")
+OF_MANY_YEARS = re.compile(r"long[ -]?term mean|climatolog")
 #: First day of times of no year, and days of a year.
 NO_YEAR, YEAR = re.compile("0{1,4}[01]?-0?1-0?1"), 365.25
 #: Width over height of a map from which a key takes less room below it, in that of the picture.
@@ -686,19 +691,31 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | 
     if (text := meaning.of(mesh).level) and attributes.get("level") != "none":
         title += f" at {text}"
     if series.TIME in mesh.field_data:
-        date = _dated(mesh, attributes.get("cell_methods", ""))
+        many = OF_MANY_YEARS.search(title.lower()) is not None
+        date = _dated(mesh, attributes.get("cell_methods", ""), of_many_years=many)
         title += f", {date}" * bool(date)
     return f"{title} ({unit})" if unit and not course and level is None else title
 
 
-def _dated(mesh: pv.DataSet, methods: str) -> str:
+def _dated(mesh: pv.DataSet, methods: str, *, of_many_years: bool = False) -> str:
     """Return the date of a step, with what a value sums up of the time for which it stands."""
     said = meaning.of(mesh)
     times = [float(np.ravel(mesh.field_data[series.TIME])[0]), *said.span]
     date, *ends = (dates.date(time, said.time).removesuffix(" 00:00") for time in times)
-    if _are_monthly(series.of(mesh), said.time):
+    steps = series.of(mesh)
+    if said.time == dates.MONTHS:
+        return calendar.month_name[int(times[0])]
+    if len(steps) < 2 and date.startswith(NO_DATE):
+        # The first year of a calendar counts from a start that is none.
+        return ""
+    apart = _days_apart(steps, said.time)
+    if len(apart) and apart.min() > MOST_HOURS / 24:
+        date = date[: len("2000-01-01")]
+    if len(apart) and np.all((apart > MONTH[0]) & (apart < MONTH[1])):
         date = date[: len("2000-01")] or _month(times[0], said.time)
-    if not date and len(series.of(mesh)) > 1:
+        if of_many_years and len(date) == len("2000-01"):
+            date = calendar.month_name[int(date[-2:])]
+    if not date and len(steps) > 1:
         unit = said.time.partition(", ")[0].partition(" since ")[0]
         # One month is a name, many are a time.
         named = unit in ("year", "month", "day", "hour")
@@ -721,11 +738,11 @@ def _month(time: float, unit: str) -> str:
     return calendar.month_name[int(time * size / (YEAR * 86400) * 12) % 12 + 1]
 
 
-def _are_monthly(times: Sequence[float], unit: str) -> bool:
-    """Return whether steps are months apart."""
+def _days_apart(times: Sequence[float], unit: str) -> Array:
+    """Return the days from step to step, 0 where their unit is none of time."""
     seconds = dates.seconds(unit.partition(" since ")[0])
-    days = np.diff(np.asarray(times, dtype=np.float64)) * (seconds or 0.0) / 86400
-    return len(days) > 0 and bool(np.all((days > MONTH[0]) & (days < MONTH[1])))
+    days: Array = np.diff(np.asarray(times, dtype=np.float64)) * (seconds or 0.0) / 86400
+    return days
 
 
 def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:

@@ -14,7 +14,7 @@ from vizlight.looks import map_parts
 from vizlight.looks.recipes.drawing import BANDS, GROUND, Drawing, Layer, lines_every, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
-from vizlight.mesh import charts, georeference
+from vizlight.mesh import charts, georeference, meaning
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 
 #: Width of the band beside coasts that sets them apart from dark colours, in widths of the line.
 BAND = 0.5
+#: Note on a map with coasts that are not drawn.
+TOO_COARSE = (
+    f"coasts are too coarse for maps under {map_parts.COASTS * 111:.0f} km; map_parts= draws them"
+)
 #: Colour of the ball where a globe has no data, which hides its far side.
 BALL = "whitesmoke"
 #: Colour of coasts below black strokes: a brown, unlike the blues and greens of the ground.
@@ -51,6 +55,7 @@ def furnished(case: Case, drawing: Drawing) -> Drawing:
     # Coasts that are asked for are drawn on a small map too.
     least = {"least": 0.0} if asked else {}
     coasts = map_parts.coasts(case.data, **least) if _has_coasts(case, asked=asked) else None
+    is_fine = coasts is None and asked is None and _has_coasts(case, asked=None)
     plain = _with_classes(case, drawing)
     drawing = _with_isolines(case, plain, beside, coasts)
     drawn = {"frame": case.frame, "isolines": len(drawing.layers) > len(plain.layers)}
@@ -73,6 +78,8 @@ def furnished(case: Case, drawing: Drawing) -> Drawing:
     drawn["coasts"] = coasts
     lacking = [name for name in map_parts.PARTS if case.wishes.draws(name) and not drawn[name]]
     notes = [f"not drawn on these data: {', '.join(lacking)}"] if lacking else []
+    if is_fine and map_parts.coasts(case.data, least=0.0) is not None:
+        notes.append(TOO_COARSE)
     return replace(drawing, layers=layers, notes=[*drawing.notes, *notes])
 
 
@@ -104,7 +111,15 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     sparse = {"sparse": SPARSE_ON_RELIEF} if is_relief else {}
     smooth = None if is_relief else map_parts.smoothed(flat, array)
     ground = flat if smooth is None else smooth
-    contoured = map_parts.isolines(ground, array, ends, size, coasts, always=bool(asked), **sparse)
+    unit, _ = meaning.usual_unit(flat.run(), array.name, max(map(abs, ends)))
+    edges: Sequence[float] = ()
+    if clim is not None and not is_relief:
+        # The same at all steps of a movie, whatever lines fit into each.
+        shown = ends[0] / unit, ends[1] / unit
+        edges = classes(even_levels(*shown, map_parts.LEVELS[0]), shown)
+    contoured = map_parts.isolines(
+        ground, array, ends, size, coasts, always=bool(asked), edges=edges, **sparse
+    )
     if contoured is None:
         return drawing
     lines, levels, factor = contoured
@@ -129,7 +144,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     keys = [key | {"title": lines_every(key["title"], levels)} for key in drawing.keys]
     if not is_relief and (cmap is None or isinstance(cmap, str)):
         shown = ends[0] / factor, ends[1] / factor
-        edges = _classes(levels, shown)
+        edges = edges or classes(levels, shown)
         first_end, *inner, last_end = (float(f"{factor * edge:.12g}") for edge in edges)
         table = Step("", BANDS, inner, (first_end, last_end), *filter(None, [cmap]))
         first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
@@ -148,14 +163,14 @@ def _with_classes(case: Case, drawing: Drawing) -> Drawing:
     if not is_field or not isinstance(cmap, str) or clim is None:
         return drawing
     low, high = clim
-    edges = _classes(even_levels(low, high, MOST_CLASSES), (low, high))
+    edges = classes(even_levels(low, high, MOST_CLASSES), (low, high))
     table = Step("", BANDS, edges[1:-1], (edges[0], edges[-1]), cmap)
     first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
     of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
     return replace(drawing, layers=[first, *others], keys=[key | of_bar for key in drawing.keys])
 
 
-def _classes(levels: Sequence[float], ends: tuple[float, float]) -> list[float]:
+def classes(levels: Sequence[float], ends: tuple[float, float]) -> list[float]:
     """Return the values at which the classes of colours between isolines begin and end.
 
     Parameters

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
+from vizlight.draw.ticks import round_length
 from vizlight.looks import map_parts
 from vizlight.looks.contents import says_heights
 from vizlight.looks.framing import Viewpoint
@@ -19,7 +20,7 @@ from vizlight.vtk.polylines import has_lines_only
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Foreign, Keywords
+    from vizlight._types import Array, Foreign, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
     from vizlight.scene import Light
@@ -29,6 +30,8 @@ ABOVE = Viewpoint((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), True, "from above, north up"
 #: Points above which a relief has no sky, which would take longer than all the rest, and those of a
 #: map so wide that each row has metres of its own, which take eight times as long.
 MOST_SKY, MOST_WIDE = 250_000, 4_000
+#: Share of a map that is no steeper than the light, so that half of the rest has its back to it.
+LIT = 0.8
 
 
 def relief(case: Case) -> Drawing:
@@ -36,7 +39,7 @@ def relief(case: Case) -> Drawing:
     array, data = case.needed_array, case.data
     camera = case.camera(data, ABOVE)
     scene = case.wishes.scene("relief", camera)
-    raised, note = _raised(case, array)
+    raised, note = _raised(case, array, scene.run().lights)
     keywords: Keywords = {"lit": True, **raised}
     straight = map_parts.before_chart(data)
     if isinstance(straight.run(), pv.StructuredGrid | pv.PolyData) and "raster" not in keywords:
@@ -49,6 +52,8 @@ def relief(case: Case) -> Drawing:
     notes = [note] if note else []
     if case.wishes.question == "auto" and not says_heights(data.run(), array.name):
         notes.append(f"{array.name} is taken for heights; question='value' shows its colours alone")
+    if case.wishes.make_scene is not None:
+        notes += _places_of(scene.run().lights)
     if data.path == map_parts.FLAT:
         notes.append("a terrain by its shape; question='shape' shows the surface as it stands")
     if not keywords["lit"]:
@@ -134,14 +139,43 @@ def _share(
 
 def _level_light(lights: Sequence[Light]) -> float:
     """Return the sine of the altitude of the highest light at infinity; 1 without one above."""
-    fixed = [light for light in lights if not light.follows_view]
-    ways = [np.asarray(light.direction) for light in fixed if light.direction is not None]
-    sines = [float(way[2] / np.linalg.norm(way)) for way in ways]
+    sines = [float(way[2] / np.linalg.norm(way)) for way in _ways(lights)]
     return max((sine for sine in sines if sine > 0), default=1.0)
 
 
-def _raised(case: Case, array: Named) -> tuple[Keywords, str]:
-    """Return the options of a shadow on heights, and the note on their factor."""
+def _ways(lights: Sequence[Light]) -> list[Array]:
+    """Return the directions toward the lights at infinity that do not follow the view."""
+    fixed = [light for light in lights if not light.follows_view]
+    return [np.asarray(light.direction) for light in fixed if light.direction is not None]
+
+
+def _places_of(lights: Sequence[Light]) -> list[str]:
+    """Return the note on where the lights at infinity stand, none without one."""
+    places = [
+        f"{np.degrees(np.arctan2(east, north)) % 360:.4g},"
+        f"{np.degrees(np.arctan2(up, np.hypot(east, north))):.3g}"
+        for east, north, up in _ways(lights)
+    ]
+    return [f"light from azimuth and altitude {' and '.join(places)} degrees"] if places else []
+
+
+def _raised(case: Case, array: Named, lights: Sequence[Light]) -> tuple[Keywords, str]:
+    """Return the options of a shadow on heights, and the note on their factor.
+
+    A low sun needs less of it: beyond the tangent of its altitude a slope has its back to it.
+    """
     keywords: Keywords = {"elevation": array.name} | dict(case.wishes.light)
-    factor, note = case.wishes.heightened(case.data.run(), array.name)
+    mesh = case.data.run()
+    factor, note = case.wishes.heightened(mesh, array.name)
+    if factor > 1 and note:
+        sine = _level_light(lights)
+        steep = height_grids.steep(mesh, array.name, LIT) * np.sqrt(1 - sine**2)
+        most = max(1.0, round_length(sine / steep)) if steep > 0 else factor
+        if most < factor:
+            times = "as they are" if most == 1 else f"{most:g} times"
+            note = (
+                f"heights are taken {times}, since much of the map would lie in the shadow of this "
+                f"light at {factor:g} times; exaggeration= sets it"
+            )
+            factor = most
     return (keywords | {"exaggeration": factor} if factor != 1 else keywords), note
