@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from vizlight.looks.recipes.drawing import range_of
+from vizlight.looks.recipes.drawing import range_of, titled
 from vizlight.looks.steps import Step
+from vizlight.mesh import meaning
 from vizlight.scene.presets import preset_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vizlight._types import Keywords
-    from vizlight.looks.contents import Contents
+    from vizlight.looks.contents import Contents, Named
     from vizlight.looks.recipes.drawing import Case, Drawing
     from vizlight.looks.wishes import Wishes
 
@@ -40,7 +41,8 @@ def wishes_of(wishes: Wishes, contents: Contents) -> Wishes:
 def shared(cases: Sequence[Case], wishes: Wishes) -> list[Wishes]:
     """Return the wishes of each case, with one camera and one range for each array.
 
-    The camera looks as suits the case of the highest dimension.
+    The camera looks as suits the case of the highest dimension. Arrays to which a reader gave one
+    name are others where their titles differ.
     """
     first = max(cases, key=lambda case: case.contents.dimension)
     whole = Step("whole", "pyvista.MultiBlock", [case.data for case in cases])
@@ -48,18 +50,24 @@ def shared(cases: Sequence[Case], wishes: Wishes) -> list[Wishes]:
     ranges: dict[str, list[tuple[float, float]]] = {}
     for case in cases:
         if case.array is not None and case.array.role in ("values", "heights"):
-            name = case.array.name
-            ranges.setdefault(name, []).append(range_of(case.data.run(), name))
+            ends = range_of(case.data.run(), case.array.name)
+            ranges.setdefault(_identity(case, case.array), []).append(ends)
     of_cases = []
     for case in cases:
-        ends = ranges.get(case.array.name, []) if case.array is not None else []
+        every = ranges.get(_identity(case, case.array), []) if case.array is not None else []
         picture: Keywords = dict(case.wishes.picture)
-        if len(ends) > 1:
+        if len(every) > 1:
             picture = {
-                "clim": (min(low for low, _ in ends), max(high for _, high in ends))
+                "clim": (min(low for low, _ in every), max(high for _, high in every))
             } | picture
         of_cases.append(replace(case.wishes, picture=picture, frame=camera))
     return of_cases
+
+
+def _identity(case: Case, array: Named) -> str:
+    """Return the name of an array, or its title where the name is one of readers."""
+    name = array.name
+    return titled(case.data.run(), name) if meaning.is_of_reader(name) else name
 
 
 def joined(drawings: Sequence[Drawing]) -> Drawing:

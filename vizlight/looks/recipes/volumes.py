@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
+from matplotlib.colors import to_hex
 
 from vizlight.draw.margins import parted
+from vizlight.filters.tint import color_table
 from vizlight.looks import levels
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around
@@ -25,7 +27,7 @@ from vizlight.mesh import density_maps, meaning, molecules, montages
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Bools
+    from vizlight._types import Array, Bools, Foreign
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
@@ -100,7 +102,8 @@ def isosurface(case: Case) -> Drawing:
     """
     array = case.needed_array
     if case.wishes.question == "auto" and _is_stack(case, array):
-        return stack(case)
+        # A sheet of slices has no place among other meshes.
+        return stack(case) if case.wishes.frame is None else slices(case)
     level = _level(case, array)
     if isinstance(level, str):
         return _cut_open(case) or slices(case, level)
@@ -216,12 +219,20 @@ def _size_of_both_signs(values: Array, volume: Step, array: Named) -> float | No
 
 def _of_both_signs(surface: Case, array: Named, ends: tuple[float, float], words: str) -> Drawing:
     """Return the drawing of the isosurfaces at a level of both signs, each in its colour."""
-    picture = {"cmap": LOBES, "clim": ends} | dict(surface.wishes.picture)
+    cmap: Foreign = surface.wishes.colors.get("cmap", LOBES)
+    # No range but theirs tells the two levels apart.
+    picture = {**surface.wishes.picture, "cmap": cmap, "clim": ends}
     wishes = replace(surface.wishes, picture=picture)
     drawing = surfaces.values(replace(surface, question="value", array=array, wishes=wishes))
     title, unit = parted(str(drawing.keys[0]["title"]))
-    title = f"{title} = {words} {unit}".rstrip()
-    key = drawing.keys[0] | {"title": title, "levels": [ends[0], 0.0, ends[1]]}
+    named = {place: levels.number(end) for place, end in enumerate(ends)}
+    table = color_table([], cmap=cmap, clim=ends)
+    colors = {place: to_hex(table.map_value(end)) for place, end in enumerate(ends)}
+    key = drawing.keys[0] | {
+        "title": f"{title} = {words} {unit}".rstrip(),
+        # Nothing is drawn between the levels, as a bar would say.
+        "cmap": Step("", "vizlight.maps.kinds", named, colors=colors),
+    }
     return replace(drawing, keys=[key])
 
 
