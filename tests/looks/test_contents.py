@@ -245,3 +245,12 @@ def test_much_the_same_greys_of_a_surface_in_space_are_no_datum(spread, shown):
     assert [each.name for each in Contents(ball).arrays] == ["RGB"] * shown
     ball["RGB"][0] = [9, 8, 7]
     assert Contents(ball).arrays[0].name == "RGB"
+
+
+def test_errors_of_other_arrays_come_last():
+    ball = pv.Sphere()
+    for name in ("NormalizedSignalEstimationError", "EstimatedUncertainty", "RTOP1"):
+        ball[name] = rising(ball.n_points)
+    assert Contents(ball).first("values").name == "RTOP1"
+    del ball.point_data["RTOP1"]
+    assert Contents(ball).first("values").name == "NormalizedSignalEstimationError"

@@ -58,6 +58,20 @@ def test_files_whose_arrays_a_reader_named_alike_have_their_own_ranges(tmp_path)
     assert key["clim"] == (0.5, 16.5)
 
 
+def test_a_closed_surface_around_others_is_see_through():
+    inside, outside = ball(0).scale(0.5), lines()
+    for other, is_around in ((inside, True), (outside, False), (ball(0.8), False)):
+        look = vizlight.look([other, ball(0)], size=SIZE)
+        seen = [
+            it.keywords.get("opacity", 1) for it in look.drawing.layers if "scalars" in it.keywords
+        ]
+        assert seen[-1] < 1 if is_around else min(seen) == 1
+        assert ("a surface is see-through: data lie inside it" in look.notes) == is_around
+    # An open one shows what it holds.
+    look = vizlight.look([inside, ball(0).clip("z", origin=(0, 0, 0.4))], size=SIZE)
+    assert not any("opacity" in layer.keywords for layer in look.drawing.layers)
+
+
 def test_blocks_of_other_dimensions_are_drawn_and_walls_of_a_volume_are_not():
     mixed = pv.MultiBlock({"ball": ball(0), "lines": lines()})
     assert [part[0].max_cell_dimensionality for part in blocks.by_dimension(mixed)] == [2, 1]

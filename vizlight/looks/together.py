@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from vizlight.looks.recipes.drawing import range_of, titled
+import numpy as np
+import pyvista as pv
+
+from vizlight.looks.recipes.drawing import file_named, range_of, titled
 from vizlight.looks.steps import Step
 from vizlight.mesh import meaning
 from vizlight.scene.presets import preset_of
@@ -20,6 +23,9 @@ if TYPE_CHECKING:
 
 #: Options of a look that name an array, which not all parts need to have.
 _NAMING = ("tangents", "elevation")
+#: Share of the points of a mesh inside a surface that make it see-through, the number of points
+#: that are looked at, and the drawing of such a surface.
+MOSTLY, SAMPLE, CLEAR = 0.5, 500, {"opacity": 0.3, "culling": "back"}
 
 
 def wishes_of(wishes: Wishes, contents: Contents) -> Wishes:
@@ -68,6 +74,35 @@ def _identity(case: Case, array: Named) -> str:
     """Return the name of an array, or its title where the name is one of readers."""
     name = array.name
     return titled(case.data.run(), name) if meaning.is_of_reader(name) else name
+
+
+def seen_through(cases: Sequence[Case], drawings: Sequence[Drawing]) -> list[Drawing]:
+    """Return drawings of which closed surfaces let what lies inside them be seen."""
+    seen = []
+    for outer, drawing in zip(cases, drawings, strict=True):
+        surface = outer.surface.run() if outer.contents.dimension == 2 else None
+        if isinstance(surface, pv.PolyData) and any(
+            _is_around(surface, case.data.run()) for case in cases if case is not outer
+        ):
+            layers = [
+                replace(layer, keywords=layer.keywords | CLEAR) if layer.live else layer
+                for layer in drawing.layers
+            ]
+            note = f"{file_named(outer.data) or 'a surface'} is see-through: data lie inside it"
+            drawing = replace(drawing, layers=layers, notes=[*drawing.notes, note])
+        seen.append(drawing)
+    return seen
+
+
+def _is_around(surface: pv.PolyData, mesh: pv.DataSet) -> bool:
+    """Return whether a surface is closed and most points of a mesh are inside it."""
+    rows = np.asarray(mesh.points)[:: mesh.n_points // SAMPLE + 1]
+    low, high = np.reshape(surface.bounds, (3, 2)).T
+    rows = rows[np.all((low < rows) & (rows < high), axis=1)]
+    if len(rows) < MOSTLY * min(SAMPLE, mesh.n_points) / 2 or surface.n_open_edges:
+        return False
+    inside = pv.PolyData(rows).select_interior_points(surface.triangulate())
+    return bool(np.mean(inside["selected_points"]) > MOSTLY)
 
 
 def joined(drawings: Sequence[Drawing]) -> Drawing:
