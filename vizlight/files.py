@@ -58,6 +58,7 @@ from vizlight.mesh.derived import (
 from vizlight.mesh.fills import without_fills
 from vizlight.mesh.molecules import atoms_in, backbone
 from vizlight.mesh.montages import side_by_side
+from vizlight.mesh.stresses import with_von_mises
 from vizlight.mesh.subdivision import simplices
 from vizlight.vtk import messages
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions, used
@@ -72,7 +73,7 @@ except ImportError:  # on Windows
 __all__ = [
     "FileError", "atoms_in", "backbone", "borders", "creases", "cut_open", "layer_of", "layers",
     "read", "read_parts", "side_by_side", "stretched", "surface_of", "warped", "with_vectors",
-    "without_corner", "without_fills", "write_mesh",
+    "with_von_mises", "without_corner", "without_fills", "write_mesh",
 ]  # fmt: skip
 
 #: File formats that keep point and field arrays, by type of mesh.

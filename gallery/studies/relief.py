@@ -5,6 +5,10 @@ compiled code are timed in turn; in fragments the picture has a pixel for each n
 hemisphere on a plane has a closed form; the error is there that of the nodes, which falls with
 their spacing. Of hard shadows, with a depth of nearly 0, the error is the share of nodes that are
 on the wrong side, from rays in small steps.
+
+Real ground is shaded by the usual formulas and by this package. It is smoothed by a Gaussian, so
+that its slopes have a closed form and its heights are no whole metres; then these are rounded to
+metres, and tiles of the ground are shaded each by itself.
 """
 
 from __future__ import annotations
@@ -15,11 +19,12 @@ from unittest import mock
 
 import numpy as np
 import pyvista as pv
+from matplotlib.colors import LightSource
 from scipy import ndimage
 
 import vizlight
 from studies import Row, Study, peak_memory, take_turns
-from vizlight import Light, Material, Scene, _compiled
+from vizlight import Light, Material, Scene, View, _compiled
 from vizlight.geometry.relief import shadowing
 
 #: Exponent by which the amplitude of the hills falls with the frequency, and their height. Both
@@ -28,6 +33,10 @@ FALL, HIGH = 1.8, 0.15
 DEPTH = 0.005
 #: Elevation of the sun in degrees, and others for fields of at most so many points per side.
 HEIGHT, HEIGHTS, SMALL = 20.0, (5.0, 40.0), 1024
+#: Material whose luminance is t, the cosine where nothing casts a shadow.
+PLAIN = Material(ambient=0.0, diffuse=1.0, specular=0.0)
+#: Width of the Gaussian in nodes of the real ground; nodes along a side of a tile; the usual sun.
+WIDTH, TILE, USUAL = 1.5, 100, {"azdeg": 315, "altdeg": 45}
 
 
 def hills(side, seed=0):
@@ -130,9 +139,7 @@ def fragments(side, repeats=3):
     """Return the row of hills whose shadow each fragment casts, one pixel for each node."""
     grid = pv.ImageData(dimensions=(side, side, 1), spacing=(1 / (side - 1),) * 3)
     grid["height"] = hills(side).ravel()
-    # Of diffuse light alone the grey level is t.
-    plain = Material(ambient=0.0, diffuse=1.0, specular=0.0)
-    scene = Scene(lights=Light(direction=sun(HEIGHT)), material=plain)
+    scene = Scene(lights=Light(direction=sun(HEIGHT)), material=PLAIN)
     lit = vizlight.relief_shadow(grid, scene, lit=True, depth=DEPTH)
     plotter = pv.Plotter(off_screen=True, window_size=(side, side))
     plotter.disable_anti_aliasing()
@@ -150,20 +157,136 @@ def fragments(side, repeats=3):
     ]
 
 
+def real_ground(times):
+    """Return heights of smooth real ground, its slopes along both axes, and its spacing, in metres.
+
+    The ground is a sum of Gaussians at the nodes of the data, here at ``times`` as many nodes each
+    way.
+    """
+    grid = vizlight.load_example("jacksboro_fault.vti")
+    columns, rows, _ = grid.dimensions
+    peaks = np.zeros((rows * times, columns * times))
+    peaks[::times, ::times] = np.reshape(grid["elevation"], (rows, columns))
+    peaks *= times * times
+    spacing = np.array(grid.spacing[:2]) / times
+    z, along, across = (
+        ndimage.gaussian_filter(peaks, WIDTH * times, order, truncate=6)
+        for order in ((0, 0), (0, 1), (1, 0))
+    )
+    return z, along / spacing[0], across / spacing[1], spacing
+
+
+def cosines(along, across):
+    """Return the light of the usual sun on ground of some slopes."""
+    x, y, z = LightSource(**USUAL).direction
+    return np.maximum(z - x * along - y * across, 0) / np.sqrt(1 + along**2 + across**2)
+
+
+def by_gdal(z, spacing):
+    """Return light by GDAL's formula, which is Horn's; the border's slopes go on beyond it."""
+    z = np.pad(z, 1, mode="reflect", reflect_type="odd")
+    inner = slice(1, -1)
+    sums = [ndimage.convolve1d(z, [1, 2, 1], axis=axis) for axis in (0, 1)]
+    along, across = (
+        np.roll(total, -1, axis) - np.roll(total, 1, axis)
+        for total, axis in zip(sums, (1, 0), strict=True)
+    )
+    return cosines(
+        along[inner, inner] / (8 * spacing[0]), across[inner, inner] / (8 * spacing[1])
+    )  # fmt: skip
+
+
+def by_matplotlib(z, spacing):
+    """Return light by the normals of matplotlib's ``LightSource``, before it is stretched."""
+    across, along = np.gradient(z, *spacing[::-1])
+    return cosines(along, across)
+
+
+def _usual():
+    """Return the scene of the usual sun, seen from above."""
+    light = Light(direction=LightSource(**USUAL).direction)
+    return Scene(lights=light, material=PLAIN, view=View(direction=(0, 0, 1)))
+
+
+def _map(z, spacing):
+    grid = pv.ImageData(dimensions=(*z.shape[::-1], 1), spacing=(*spacing, 1))
+    grid["height"] = z.ravel()
+    return grid
+
+
+def by_illuminate(z, spacing):
+    """Return light by ``illuminate`` on the raised ground."""
+    ground = _map(z, spacing).warp_by_scalar("height")
+    ground.clear_data()
+    return np.reshape(vizlight.illuminate(ground, _usual())["luminance"], z.shape)
+
+
+def by_shadow(z, spacing):
+    """Return light by ``relief_shadow``."""
+    return np.reshape(vizlight.relief_shadow(_map(z, spacing), _usual())["t"], z.shape)
+
+
+#: Ways to shade ground.
+SHADED = {
+    "GDAL's formula": by_gdal, "matplotlib's LightSource": by_matplotlib,
+    "illuminate": by_illuminate, "relief_shadow": by_shadow,
+}  # fmt: skip
+
+
+def root_mean_square(differences):
+    """Return the root mean square in grey levels."""
+    return float(255 * np.sqrt(np.mean(np.square(differences))))
+
+
+def shaded(times, repeats=3):
+    """Return the rows of shaded real ground: error, noise of whole metres, seams of tiles.
+
+    All but the mean error are root mean squares in grey levels.
+    """
+    z, along, across, spacing = real_ground(times)
+    exact = cosines(along, across)
+    tiles = [
+        (slice(j, j + TILE), slice(i, i + TILE))
+        for j in range(0, len(z) - TILE + 1, TILE)
+        for i in range(0, z.shape[1] - TILE + 1, TILE)
+    ]
+    border = np.pad(np.zeros((TILE - 2, TILE - 2), dtype=bool), 1, constant_values=True)
+    seconds = take_turns({way: partial(f, z, spacing) for way, f in SHADED.items()}, repeats)
+    rows = []
+    # The border of the data is left out: there the Gaussian repeats heights.
+    inner = (slice(4 * times, -4 * times),) * 2
+    for way, light in SHADED.items():
+        whole = light(z, spacing)
+        off = (whole - exact)[inner]
+        more = {
+            "rms of 255": root_mean_square(off),
+            "noise of metres, rms of 255": root_mean_square(
+                (light(np.rint(z), spacing) - whole)[inner]
+            ),
+            "at borders of tiles, rms of 255": root_mean_square(
+                [(light(z[tile], spacing) - whole[tile])[border] for tile in tiles]
+            ),
+        }
+        cost = 1e9 * seconds[way] / z.size
+        rows.append(Row(f"real ground, {way}", len(z), float(np.abs(off).mean()), cost, more))
+    return rows
+
+
 def steps(quick):
-    """Return the steps: hills in two ways, under other suns, hemispheres, hard shadows."""
+    """Return the steps: hills in two ways, other suns, hemispheres, hard shadows, real ground."""
     sides = (128, 256) if quick else (256, 512, 1024, 2048)
     small = [side for side in sides if side <= SMALL]
     made = [partial(measure, side, repeats=1 if quick else 3) for side in sides]
     made += [partial(measure, side, height, repeats=1) for height in HEIGHTS for side in small]
     made += [partial(hemisphere, side) for side in (76, 151, 301)]
     made += [partial(fragments, side, repeats=1 if quick else 3) for side in small]
+    made += [partial(shaded, times, repeats=1 if quick else 3) for times in (1, 3)]
     return made + [partial(hard, side) for side in small]
 
 
 STUDY = Study(
     approximates="t of the cos-theta shadow of height fields, sun at 20 degrees unless stated",
-    reference="for hills, the light by NumPy; for a hemisphere on a plane, the closed form",
+    reference="for hills, the light by NumPy; for a hemisphere and real ground, the closed form",
     parameter="points per side",
     error="mean error of t",
     cost="ns per point",

@@ -5,10 +5,11 @@ import pytest
 import pyvista as pv
 from lamps import far, shiny
 from vectors import unit
+from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkRenderingCore import vtkMapper
 
 import vizlight
-from vizlight import Material, Scene, View, render
+from vizlight import Light, Material, Scene, View, render
 from vizlight.draw import strokes
 
 pytestmark = pytest.mark.opengl
@@ -275,6 +276,80 @@ def test_a_halo_in_a_colour_is_narrower(light):
     # 0.45 of 5 pixels on each side of rows 97 to 102.
     assert column[[96, 103]] == pytest.approx(0, abs=0.02)
     assert column[[80, 93, 106, 120]] == pytest.approx(0.4, abs=0.02)
+
+
+def lit_in_fragments(actor):
+    """Return whether the shader of fragments of an actor computes light."""
+    shader = actor.GetShaderProperty()
+    for i in range(shader.GetNumberOfShaderReplacements()):
+        mark, text, first, every = reference(""), reference(""), reference(0), reference(0)
+        shader.GetNthShaderReplacement(i, mark, first, text, every)
+        if "Fragment" in shader.GetNthShaderReplacementTypeAsString(i) and "vizLight0" in text:
+            return True
+    return False
+
+
+def turning(degrees):
+    """Return a line of segments that turn by an angle, with an array and tangents."""
+    turns = np.radians(np.arange(0, 540, degrees))
+    points = (1.2 - 0.2 * turns / np.pi) * np.array([np.cos(turns), np.sin(turns), turns / 9])
+    line = pv.lines_from_points(points.T)
+    line["height"] = line.points[:, 1] - 0.2 * line.points[:, 0]
+    line["course"] = unit(np.gradient(line.points, axis=0))
+    return line
+
+
+def shown(line, lights, *, parallel, **options):
+    """Return the picture of a line with a halo, and whether its light is in fragments."""
+    plotter = pv.Plotter(off_screen=True, window_size=(300, 300))
+    scene = Scene(lights=lights, material=shiny(specular=0.0))
+    actor = plotter.vizlight.add_mesh(
+        line, scene=scene, line_width=7, show_scalar_bar=False, **options
+    )
+    plotter.camera = looking_down(parallel=parallel)
+    plotter.reset_camera_clipping_range()
+    picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)
+    return picture, lit_in_fragments(actor)
+
+
+LAMPS = [Light(direction=(1, 0.4, 0.6)), Light.headlight(intensity=0.4)]
+
+
+@pytest.mark.parametrize("option", [{}, {"scalars": "height"}, {"tangents": "course"}])
+@pytest.mark.parametrize("parallel", [False, True])
+def test_light_at_three_places_of_segments_is_that_in_each_fragment(option, parallel):
+    """A lamp at a place, which has it in each fragment, is too weak to show."""
+    weak = Light(position=(9, 9, 9), intensity=1e-9)
+    three, in_fragments = shown(turning(15), LAMPS, parallel=parallel, **option)
+    assert not in_fragments
+    each, in_fragments = shown(turning(15), [*LAMPS, weak], parallel=parallel, **option)
+    assert in_fragments
+    assert np.min(np.ptp(three, axis=(0, 1))) > 100
+    assert np.percentile(np.abs(three - each), 99.99) <= 2
+
+
+def test_highlights_of_lines_with_halos_are_in_each_fragment():
+    scene = Scene(material=shiny(specular=0.5))
+    plotter = pv.Plotter(off_screen=True)
+    actor = plotter.vizlight.add_mesh(turning(15), scene=scene, halo=1.0)
+    plotter.show(auto_close=False)
+    assert lit_in_fragments(actor)
+    assert plotter.vizlight.explain(actor).startswith("light in each fragment")
+    plotter.vizlight.set_scene(actor, Scene())
+    plotter.render()
+    assert not lit_in_fragments(actor)
+    assert plotter.vizlight.explain(actor).startswith("light at three places of each segment")
+
+
+def test_points_without_a_direction_have_the_colour_of_missing_data():
+    """Their segments are lit in each fragment: a parabola would reach far from them."""
+    lines = turning(15)
+    lines["course"][5:8] = 0.0
+    plotter = pv.Plotter(off_screen=True)
+    with pytest.warns(UserWarning, match="3 of"):
+        actor = plotter.vizlight.add_mesh(lines, scene=Scene(), tangents="course", halo=1.0)
+    plotter.show(auto_close=False)
+    assert lit_in_fragments(actor)
 
 
 @pytest.mark.parametrize("halo", [-1, "wide", np.nan])

@@ -221,8 +221,7 @@ def test_points_that_are_not_finite_and_lines_of_no_length():
     with pytest.warns(UserWarning, match="could not be lit"):
         assert np.isfinite(vizlight.illuminate(one, SCENE, bundle=True)["luminance"]).all()
     straight = vizlight.illuminate(pv.Line(resolution=50), SCENE, bundle=True)
-    # A single line on a row of voxels: its own share is known on average alone.
-    assert straight["transmittance"].min() > 0.94
+    assert straight["transmittance"].min() > 0.99
 
 
 def test_a_plan_says_that_light_is_dimmed():

@@ -254,3 +254,20 @@ def test_errors_of_other_arrays_come_last():
     assert Contents(ball).first("values").name == "RTOP1"
     del ball.point_data["RTOP1"]
     assert Contents(ball).first("values").name == "NormalizedSignalEstimationError"
+
+
+def test_arrays_that_tell_the_place_are_no_vectors_and_come_last():
+    grid = pv.ImageData(dimensions=(9, 8, 7), spacing=(5, 5, 2)).cast_to_unstructured_grid()
+    x, y, z = np.round(grid.cell_centers().points.T, 3)
+    places = {"IX": x // 5, "IY": y // 5, "IZ": z // 2, "XC": x, "IJK": x // 5 + 8 * (y // 5)}
+    for name, values in places.items():
+        grid.cell_data[name] = values
+    grid.cell_data["__in"] = np.random.default_rng(0).random(grid.n_cells)
+    grid.cell_data["Au"] = np.exp(-(((x - 20) / 9) ** 2))
+    arrays = Contents(grid).arrays
+    assert arrays[0].name == "Au"
+    assert "vectors" not in {array.role for array in arrays}
+    # Alone, such an array is shown.
+    grid.clear_data()
+    grid["height"] = grid.points[:, 2]
+    assert [array.name for array in Contents(grid).arrays] == ["height"]

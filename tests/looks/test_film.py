@@ -140,7 +140,7 @@ def test_a_volume_keeps_its_level_and_its_camera(tmp_path: Path) -> None:
     ]
     look = vizlight.look(_series(tmp_path, steps, VOLUME), size=SIZE)
     options = _options(look, tmp_path / "x.gif")
-    assert options["contour"] == "T"
+    assert options["array"] == "T"
     assert isinstance(options["level"], float)
     assert options["view"] is look.drawing.camera
 

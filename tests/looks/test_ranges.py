@@ -32,6 +32,15 @@ def test_few_values_far_outside_lie_beyond_the_ends():
     assert f"from {shown.low:g} to" in shown.words("t")
 
 
+def test_a_long_tail_of_many_values_is_seen_to_its_end():
+    # As grades of ore are: those that are sought are far above most others.
+    values = np.random.default_rng(0).lognormal(-0.5, 0.8, 4000)
+    assert np.mean(values > 3) > 0.02
+    shown = range_shown(values)
+    assert shown.high >= values.max()
+    assert not any(shown.clipped)
+
+
 def test_one_repeated_value_far_outside_is_a_region_apart():
     values = np.concatenate([RANDOM.normal(2.4, 0.4, 4000), np.zeros(200)])
     shown = range_shown(values)

@@ -21,14 +21,13 @@ def volume(noise=0.0, count=24, kind=float):
     return grid
 
 
-def test_a_second_array_is_shown_on_the_isosurface_where_it_changes_along_it():
+def test_an_array_that_is_asked_for_besides_is_shown_on_the_isosurface():
     grid = volume()
-    grid["twice"] = 2 * grid["T"] + 1
-    look = vizlight.look(grid, array="T")
-    assert look.shown == "isosurface"
-    assert "colours" not in look.summary
     grid["x"] = grid.points[:, 0]
-    assert "in the colours of x" in vizlight.look(grid, array="T").summary
+    assert "colours of x" not in vizlight.look(grid, array="T").summary
+    look = vizlight.look(grid, array="T", scalars="x")
+    assert look.shown == "isosurface"
+    assert "in the colours of x" in look.summary
 
 
 def test_the_title_of_an_isosurface_has_the_words_and_the_unit_of_its_file():
@@ -147,7 +146,7 @@ def test_a_scan_fills_the_picture_and_not_its_box():
     right = np.cross(eye.direction, eye.up)
     depth = (look.mesh.points - eye.position) @ eye.direction
     across = np.abs((look.mesh.points - eye.position) @ right) / depth
-    assert across.max() > 0.8 * np.tan(np.radians(eye.view_angle / 2))
+    assert across.max() > 0.75 * np.tan(np.radians(eye.view_angle / 2))
 
 
 def scan(*layers, axes=()):
@@ -274,7 +273,7 @@ def test_specks_beside_the_isosurface_of_a_scan_are_left_out(tmp_path):
     values[55:57, 3:5, 3:5] = values.max()
     look = vizlight.look(grid)
     assert "2 small pieces are left out" in look.drawing.notes
-    assert look.mesh.bounds[0] == pytest.approx(0.3, abs=0.05)
+    assert look.mesh.bounds[0] == pytest.approx(0.25, abs=0.05)
     assert '.connectivity("specified", [0])' in look.script("a.png")
     # Who asks for a level gets all of it.
     whole = vizlight.look(grid, "shape", contour="T", level=0.0)

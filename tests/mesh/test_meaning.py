@@ -75,6 +75,9 @@ def test_a_letter_anywhere_tells_the_components_of_a_motion(group, unit):
         ("MAPFAC_UX", "MAPFAC_UY"),
         ("wind_0", "wind_1", "wind_2", "wind_3"),
         ("temperature_0", "temperature_1"),
+        ("PERMX", "PERMY", "PERMZ"),
+        ("TRANX", "TRANY", "TRANZ"),
+        ("kx", "ky", "kz"),
     ],
 )
 def test_half_a_pair_is_no_vector(names):

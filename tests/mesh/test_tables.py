@@ -51,7 +51,9 @@ def test_a_table_over_a_mesh_has_a_row_for_each_point(tmp_path):
     table = written(tmp_path / "b.tsv", "p\tq\n1\t5\n2\t6\n3\t7\n4\t8\n")
     assert vizlight.read(tmp_path / "a.vtp", overlay=table)["q"].tolist() == [5, 6, 7, 8]
     short = written(tmp_path / "c.csv", "p\n1\n")
-    words = "overlay: expected values for the points of .*'.*c.csv' has 1 rows for a mesh of 4 points"
+    words = (
+        "overlay: expected values for the points of .*'.*c.csv' has 1 rows for a mesh of 4 points"
+    )
     with pytest.raises(FileError, match=words):
         vizlight.read(tmp_path / "a.vtp", overlay=short)
     uneven = written(tmp_path / "d.csv", "p\n1,2\n")

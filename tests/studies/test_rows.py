@@ -209,6 +209,42 @@ def test_rays_in_small_steps_see_a_wall():
     np.testing.assert_array_equal(seen, (np.arange(60) <= 30) | (np.arange(60) >= 40))
 
 
+@pytest.mark.parametrize("way", relief.SHADED)
+def test_a_slope_has_its_cosine_up_to_the_border(way, random):
+    along, across = random.uniform(-0.5, 0.5, 2)
+    x, y = np.meshgrid(3.0 * np.arange(12), 2.0 * np.arange(9))
+    light = relief.SHADED[way](along * x + across * y + 500, np.array([3.0, 2.0]))
+    np.testing.assert_allclose(light, relief.cosines(along, across), atol=1e-5)
+
+
+def test_slopes_of_real_ground_are_those_of_its_heights():
+    z, along, across, spacing = relief.real_ground(2)
+    for slope, axis, step in ((along, 1, spacing[0]), (across, 0, spacing[1])):
+        # A closed form at twice the nodes, beside differences of the fourth order.
+        near, far = (np.roll(z, -k, axis) - np.roll(z, k, axis) for k in (1, 2))
+        off = ((8 * near - far) / (12 * step) - slope)[8:-8, 8:-8]
+        assert np.sqrt(np.mean(off**2)) < 0.01 * np.std(slope)
+
+
+@pytest.mark.slow
+def test_noise_of_whole_metres_is_that_of_the_differences():
+    """Rounding has the variance 1/12; Horn's weights leave 3/8 of that of central differences."""
+    coarse, fine = ({row.way: row for row in relief.shaded(n, 1)} for n in (1, 3))
+    for rows in (coarse, fine):
+        gdal, plain, *ours = (row.more["noise of metres, rms of 255"] for row in rows.values())
+        assert gdal / plain == pytest.approx(np.sqrt(3 / 8), rel=0.03)
+        assert ours == pytest.approx([plain, plain], rel=0.01)
+        assert (
+            rows["real ground, relief_shadow"].error
+            < 0.8 * rows["real ground, GDAL's formula"].error
+        )
+    for way, row in coarse.items():
+        assert row.error / fine[way].error == pytest.approx(9, rel=0.1)
+        seams = (rows[way].more["at borders of tiles, rms of 255"] for rows in (coarse, fine))
+        # A one-sided slope is off by the spacing times half the curvature.
+        assert next(seams) / next(seams) == pytest.approx(3, rel=0.25)
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:the sky changes inside of triangles")
 def test_the_sky_keeps_to_the_error_that_is_asked():

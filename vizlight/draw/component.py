@@ -97,9 +97,10 @@ class Component:
         light : {"auto", "points", "fragments"}
             Place where the light is computed: at the points of the mesh, the numbers that a filter
             attaches; or in each fragment, from interpolated tangents and normals, which is right
-            between the points of a coarse mesh too. "auto": in fragments where the plan allows.
-            ``"fragments"`` warns where it does not, and casts the cos-theta shadows of an even
-            height field in each fragment, of lamps that move too.
+            between the points of a coarse mesh too; of lines with halos at three places of each
+            segment, if no highlight and no lamp at a place changes it faster. "auto": in fragments
+            where the plan allows. ``"fragments"`` warns where it does not, and casts the cos-theta
+            shadows of an even height field in each fragment, of lamps that move too.
         scalars : str or array_like, optional
             Array that gives the colours, by its name or with one row per point or cell. Light keeps
             them readable, as in :func:`vizlight.tint`: without a highlight, and grey for missing

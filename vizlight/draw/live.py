@@ -249,8 +249,23 @@ class Live:
         """Return where the light is computed, and which terms are computed or skipped and why."""
         seen = scene if self.scalars is None else for_colors(scene)
         plan = decide(lighting.fit_depth_cue(seen, [self.source.inputs.points]), *self.lit_as())
-        where = f"light at the points: {self.reason}" if self.reason else "light in each fragment"
+        place = "at three places of each segment" if self._is_even(plan) else "in each fragment"
+        where = f"light at the points: {self.reason}" if self.reason else f"light {place}"
         return f"{where}\n{plan.explain()}"
+
+    def _is_even(self, plan: Plan) -> bool:
+        """Return whether lines with halos have light that is smooth within each segment."""
+        # Colours of data have no highlight.
+        shines = plan.specular and self.scalars is None
+        is_near = any(lamp.position is not None for lamp in plan.scene.lights)
+        return (
+            # Round lines have another light at each place across them.
+            (self.stroke.halo > 0 and not self.stroke.round)
+            # Highlights and the light of near lamps rise and fall within a segment.
+            and not (shines or is_near)
+            # Grey of points that cannot be lit reaches no farther than these.
+            and not self.invalid()
+        )
 
     def set_scene(self, scene: Scene, actor: vtkActor) -> None:
         """Take another scene, by which the next frame is lit."""
@@ -732,7 +747,8 @@ class Fragments(Live):
             written = glsl.write(plan, turned=turned, stroke=self.stroke, data=data)
             texts = dialects.VTK.replacements(written, numbers)
             if self.stroke != Stroke():
-                texts = strokes.widened(actor, texts, self.stroke)
+                even = numbers if self._is_even(plan) else ()
+                texts = strokes.widened(actor, texts, self.stroke, even)
             dialects.replace(actor, texts)
             self._key, self._plan = key, plan
         _set_uniforms(numbers, renderer, actor)

@@ -8,7 +8,8 @@ eye by its own width, so that a surface on which it lies does not hide it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import pyvista as pv
@@ -19,7 +20,7 @@ from vizlight import _check
 from vizlight._types import Array, Foreign, Indices, Keywords
 from vizlight.draw import glsl
 from vizlight.draw.dialects import VTK, Replacement, replace
-from vizlight.draw.glsl import ALONG, END, HALO, Stroke, suffixed
+from vizlight.draw.glsl import ALONG, END, HALO, Stroke, Uniform, suffixed
 from vizlight.draw.symbols import number
 from vizlight.model import formulas
 from vizlight.vtk import polylines
@@ -260,7 +261,10 @@ def has_pass(step: Foreign, kind: str) -> bool:
 
 
 def widened(
-    actor: vtkActor, replacements: Iterable[Replacement], stroke: Stroke
+    actor: vtkActor,
+    replacements: Iterable[Replacement],
+    stroke: Stroke,
+    numbers: Sequence[Uniform] = (),
 ) -> list[Replacement]:
     """Return replacements that draw lines as quads of a width, which the actor is set to.
 
@@ -273,6 +277,9 @@ def widened(
         join.
     stroke : Stroke
         Width of the lines, and of their halos.
+    numbers : sequence of Uniform, optional
+        Numbers of a light that is smooth within segments. It is computed at three places of each
+        in place of in each fragment, of which a halo has more than its line.
     """
     # Lines as tubes are quads that VTK makes in a shader, whatever width a driver can draw.
     prop = actor.GetProperty()
@@ -291,17 +298,74 @@ def widened(
             if stroke.halo and suffixed(HALO[0].name) not in text:
                 text += into
         texts.append(Replacement(stage, mark, text))
+    if numbers:
+        texts = _lit_by_segments(texts, numbers)
     words = "".join(text for _, _, text in texts)
     joined, ended = (suffixed(v.name) in words for v in (ALONG, END))
     quad = _quad(stroke, joined=joined, ended=ended)
     return [
-        *texts,
         # Normals of VTK's own tubes, and their depth.
         Replacement("Geometry", "//VTK::Normal::Start", ""),
+        *texts,
         Replacement("Fragment", "//VTK::Depth::Impl", _border(stroke) if stroke.halo else ""),
         Replacement("Geometry", "//VTK::PositionVC::Impl", quad),
         *([Replacement("Fragment", "//VTK::TCoord::Impl", _GROUNDED)] if stroke.halo else []),
     ]
+
+
+def _lit_by_segments(texts: list[Replacement], numbers: Sequence[Uniform]) -> list[Replacement]:
+    """Return texts that compute the light of fragments at both ends and the middle of segments.
+
+    In between it is the parabola through all three.
+    """
+    by_mark = {(stage, mark): text for stage, mark, text in texts}
+    light = by_mark["Fragment", "//VTK::Light::Impl"].partition("  gl_FragData[0] = ")[0]
+    outputs = by_mark["Geometry", "//VTK::Normal::Dec"]
+    inputs = [(k, n) for k, n in re.findall(r"in (\w+) (\w+)\[\];", outputs) if n in light]
+    uniforms = "".join(f"uniform {u.kind} {u.name};\n" for u in numbers)
+    parameters = ", ".join(f"{kind} {name}" for kind, name in inputs)
+    places = ("{0}[0]", "{0}[1]", "0.5 * ({0}[0] + {0}[1])")
+    first, last, middle = (
+        f"vizLit({', '.join(place.format(name) for _, name in inputs)})" for place in places
+    )
+    # Colours of data are those of fragments, and light is a factor on them.
+    is_factor = "vizColorGain" in light
+    colors = _WHITE if is_factor else _COLORS
+    by_mark["Geometry", "//VTK::Normal::Dec"] = (
+        f"{outputs}out vec4 vizLitGSOutput;\nflat out vec3 vizBulgeGSOutput;\n{uniforms}"
+        f"{by_mark['Fragment', '//VTK::Light::Dec']}{colors}"
+        f"vec3 vizLit({parameters}) {{\n{light}  return vizColor;\n}}\n"
+    )
+    by_mark["Geometry", "//VTK::Normal::Start"] = (
+        f"  vec3 vizLits[2] = vec3[2]({first}, {last});\n"
+        f"  vec3 vizBulge = 4.0 * {middle} - 2.0 * (vizLits[0] + vizLits[1]);\n"
+    )
+    by_mark["Geometry", "//VTK::Normal::Impl"] += (
+        "  vizLitGSOutput = vec4(vizLits[i], i);\n  vizBulgeGSOutput = vizBulge;\n"
+    )
+    by_mark["Fragment", "//VTK::Normal::Dec"] += (
+        "in vec4 vizLitVSOutput;\nflat in vec3 vizBulgeVSOutput;\n"
+    )
+    by_mark["Fragment", "//VTK::Light::Dec"] = ""
+    by_mark["Fragment", "//VTK::Light::Impl"] = (
+        "  vec3 vizColor = vizLitVSOutput.rgb\n"
+        "    + vizLitVSOutput.w * (1.0 - vizLitVSOutput.w) * vizBulgeVSOutput;\n"
+        + "  vizColor *= vizColorGain * (ambientColor + diffuseColor);\n" * is_factor
+        + "  gl_FragData[0] = vec4(vizColor, opacity);\n"
+    )
+    return [Replacement(stage, mark, text) for (stage, mark), text in by_mark.items()]
+
+
+#: The colours of the material as VTK's fragments have them, and none.
+_COLORS = (
+    "uniform float ambientIntensity, diffuseIntensity;\n"
+    "uniform vec3 ambientColorUniform, diffuseColorUniform;\n"
+    "#define ambientColor (ambientIntensity * ambientColorUniform)\n"
+    "#define diffuseColor (diffuseIntensity * diffuseColorUniform)\n"
+)
+_WHITE = (
+    "#define vizColorGain 1.0\n#define ambientColor vec3(1.0)\n#define diffuseColor vec3(0.0)\n"
+)
 
 
 def _quad(stroke: Stroke, *, joined: bool, ended: bool) -> str:

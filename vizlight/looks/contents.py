@@ -11,7 +11,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.maps import MOST_SPAN
-from vizlight.mesh import blocks, meaning, records
+from vizlight.mesh import blocks, meaning, records, stresses
 from vizlight.vtk.arrays import are_colors
 
 if TYPE_CHECKING:
@@ -74,6 +74,9 @@ _LOAD_WORDS = {
 #: Most points of a solid whose surface is looked at, and the share of its points on its surface
 #: from which that shows what is inside as well.
 MOST_ON_SURFACE, OUTSIDE = 300_000, 0.3
+#: Points or cells that are looked at for arrays that tell the place, fewest of a mesh for that, and
+#: largest difference from such an array as a share of the range of its values.
+PLACES, FEWEST_PLACES, ROUNDING = 100, 30, 1e-4
 #: Words of a name: runs of letters, of which a capital begins another.
 _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
 #: What else has heights and depths that are no ground: clouds, waves, layers, snow, trees.
@@ -177,13 +180,23 @@ class Contents:
         return None if between.any() else axis
 
     @cached_property
-    def is_part(self) -> bool:
-        """Whether most points of a solid are on its surface: a part that is no box of air.
+    def flow(self) -> Named | None:
+        """The best array of vectors, None where they displace or load a solid, or there are none.
 
-        Its vectors, if any, are displacements or loads.
+        Those of a mesh with stresses are such whatever their names are.
         """
         vectors = self.first("vectors")
-        if self.dimension != 3 or not (vectors is None or vectors.is_load):
+        return None if vectors is None or vectors.is_load or self.is_strained else vectors
+
+    @cached_property
+    def is_strained(self) -> bool:
+        """Whether it has stresses."""
+        return stresses.tensors_of(self.mesh) is not None or stresses.has_von_mises(self.mesh)
+
+    @cached_property
+    def is_part(self) -> bool:
+        """Whether most points of a solid are on its surface: a part that is no box of air."""
+        if self.dimension != 3 or self.flow is not None:
             return False
         if isinstance(self.mesh, pv.ImageData | pv.RectilinearGrid):
             return False
@@ -252,10 +265,10 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     """Return the arrays that are data, the best for a picture first.
 
     The active array comes first, of kinds if these have colours of their own, then numbers in
-    floating point, components of vectors last, those of points before those of
-    cells, those that describe the grid of a model last; then kinds, those of cells first, which are
-    materials more often than those of points; each in the order of the mesh. Arrays made by filters
-    of light are left out.
+    floating point, components of vectors last, those of points before those of cells, those that
+    describe the grid of a model, or tell the place, last; then kinds, those of cells first, which
+    are materials more often than those of points; each in the order of the mesh. Arrays made by
+    filters of light are left out.
     """
     outputs = records.all_made(mesh)
     described, texture = [], mesh.point_data.active_texture_coordinates_name
@@ -304,12 +317,16 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         Named(",".join(names), "vectors", names[0] not in mesh.point_data)
         # On a vertical section one of them points out of the picture.
         for names in ([] if is_section else meaning.components(mesh))
-        if ",".join(names) not in mesh.array_names and not all(map(_is_table, names))
+        if ",".join(names) not in mesh.array_names
+        and not all(map(_is_table, names))
+        # Coordinates and numbers of cells along the axes are no vectors.
+        and set(names) != _affine(mesh, names)
     ]
     active = (mesh.active_scalars_name, mesh.active_vectors_name)
     of_file = meaning.MEANING in mesh.field_data
 
     parts = {name for vector in joined for name in vector.name.split(",")}
+    of_place = _affine(mesh, [array.name for array in described if array.role != "kinds"])
 
     def rank(array: Named) -> tuple[bool, bool, bool, bool, bool]:
         # An active array of kinds with names, such as elements, is the best.
@@ -317,11 +334,34 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         kinds = array.role == "kinds" and not own
         words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
         static = of_file and _OF_GRID.search(words) is not None
+        static |= array.name in of_place or array.name.startswith("_")
         static |= not _OF_ERRORS.isdisjoint(_words(array.name))
         is_inactive = array.name not in active
         return (kinds, static, is_inactive, array.name in parts, array.of_cells != kinds)
 
     return tuple(sorted([*described, *joined], key=rank))
+
+
+def _affine(mesh: pv.DataSet, names: Sequence[str]) -> set[str]:
+    """Return which arrays are sums of multiples of the coordinates: they tell the place alone."""
+    result: set[str] = set()
+    for of_cells, data in enumerate((mesh.point_data, mesh.cell_data)):
+        rows = [name for name in names if name in data and np.ndim(data[name]) == 1]
+        count = mesh.n_cells if of_cells else mesh.n_points
+        if not rows or count <= FEWEST_PLACES:
+            continue
+        ids = np.linspace(0, count - 1, PLACES).astype(int).tolist()
+        # One by one, since an image would compute all of its points.
+        places = np.array([mesh.get_cell(i).center if of_cells else mesh.GetPoint(i) for i in ids])
+        design = np.column_stack([places - places.mean(axis=0), np.ones(len(ids))])
+        for name in rows:
+            values = np.asarray(data[name])[ids].astype(np.float64)
+            if not np.isfinite(values).all() or not np.ptp(values):
+                continue
+            left = values - design @ np.linalg.lstsq(design, values)[0]
+            if np.abs(left).max() < ROUNDING * np.ptp(values):
+                result.add(name)
+    return result
 
 
 def _is_length(mesh: pv.DataSet, name: str) -> bool:

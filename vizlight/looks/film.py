@@ -315,6 +315,8 @@ def _settings(look: vizlight.Look, read: Step, times: Sequence[float]) -> Keywor
         if each.keywords.get("level") is not None:
             options |= {name: each.keywords[name] for name in ("contour", "level")}
             array = drawing.layers[0].keywords.get("scalars")
+        elif each.path == "files.without_corner" and each.arguments[2] is not None:
+            options["level"] = each.arguments[2]
     if array is not None:
         options["array"] = array
         if "clim" not in options and any("clim" in key for key in drawing.keys):

@@ -338,21 +338,21 @@ def _around(
     areas = np.linalg.norm(normals, axis=1)
     lengths, middles = np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1), edges.mean(axis=1)
     whole = float(lengths.sum())
+    # The same from everywhere.
+    spread = np.cov(corners.mean(axis=1).T, aweights=areas) if areas.sum() > 0 else np.eye(3)
     scores = []
     for way in ways:
         score = _seen(corners, places, normals, areas, way, values)
         if whole > 0:
             front = _in_front(np.concatenate([middles, places]), len(middles), way)
             score *= 1 + CREASED * float(lengths[front].sum()) / whole
-        scores.append((score * _length_across(corners, areas, way) ** ACROSS, way))
+        scores.append((score * _length_across(spread, way) ** ACROSS, way))
     best = max(scores, key=lambda pair: pair[0])[1]
     return Viewpoint(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
 
 
-def _length_across(corners: Array, areas: Array, way: Array) -> float:
-    """Return the length of triangles across the picture, over that in space: the spread of each."""
-    middles = corners.mean(axis=1)
-    spread = np.cov(middles.T, aweights=areas) if areas.sum() > 0 else np.eye(3)
+def _length_across(spread: Array, way: Array) -> float:
+    """Return the length across the picture, over that in space, of a surface of a covariance."""
     flat = np.stack(_plane(way))
     across, whole = (np.linalg.eigvalsh(each)[-1] for each in (flat @ spread @ flat.T, spread))
     return float(np.sqrt(across / whole)) if whole > 0 else 1.0

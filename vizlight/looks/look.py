@@ -25,7 +25,15 @@ from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, run, source, written
 from vizlight.looks.wishes import even_light, is_whole_earth
-from vizlight.mesh import blocks, cf_grids, georeference, height_grids, meaning, series
+from vizlight.mesh import (
+    blocks,
+    cf_grids,
+    georeference,
+    height_grids,
+    meaning,
+    series,
+    stresses,
+)
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
@@ -396,7 +404,7 @@ def look(
         Further options. How files and data of xarray are read: ``time``, ``overlay``, ``at``,
         ``nodata``, as by :func:`vizlight.read`. Parts of the data: ``slice`` and ``clip`` (a plane,
         ``"z:4"`` or a normal and an origin), ``threshold`` (``"Temp:300:600"`` or a name and two
-        numbers), ``contour``, ``level``, ``warp``, ``exaggeration``, ``globe`` (a map of the whole
+        numbers), ``contour``, ``level`` (of an isosurface), ``warp``, ``exaggeration``, ``globe`` (a map of the whole
         earth on a ball, a raised one with ``warp`` or ``exaggeration``). The light: ``scene``, and
         options of :func:`vizlight.illuminate` or of the filter of the question, such as
         ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
@@ -635,6 +643,9 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     if georeference.is_earth(mesh):
         step = Step("chart", "vizlight.cartography.in_degrees", step)
         notes.append("x and y are those of the whole earth in degrees, and taken for them")
+    tensors = stresses.tensors_of(step.run())
+    if tensors is not None and not stresses.has_von_mises(step.run()):
+        step = Step("strained", "files.with_von_mises", step, tensors)
     of_light = (wishes.light.get(name) for name in ("normals", "occlusion", "positions"))
     without = tuple(name for name in of_light if isinstance(name, str))
     contents = Contents(step.run(), raster, without)
@@ -685,6 +696,10 @@ def _chosen(data: Step, contents: Contents, wishes: Wishes) -> tuple[Rule, Case]
         if array is None and not rule.holds(contents):
             continue
         chosen = rule.array(contents) if array is None else array
+        has_level = rule.shown == "isosurface" or wishes.part.get("contour") is not None
+        if wishes.part.get("level") is not None and not has_level:
+            expected = "contour with it, of data that are no volume of values"
+            raise value_error("level", expected, "it alone")
         return rule, Case(data, contents, wishes, rule.question, chosen)
     return _explicit(data, contents, wishes, array, question)
 

@@ -54,8 +54,6 @@ def checked(options: Mapping[str, Given]) -> Keywords:
     TypeError, ValueError
         If a value does not fit, or two options do not go together.
     """
-    if options.get("level") is not None and options.get("contour") is None:
-        raise value_error("level", "contour with it", "it alone")
     if options.get("slice") is not None and options.get("contour") is not None:
         raise value_error("slice", "no contour beside it", "both")
     return {

@@ -11,8 +11,10 @@ from vizlight.draw.ticks import even_ends
 from vizlight.maps import TWO_SIDED
 
 #: Distances of a quartile from the median at which values are far outside, 3 deviations of a normal
-#: distribution, the largest share of them that is clipped, and the share of the bar that they take.
-FENCE, MOST_OUTSIDE, LEAST_FREED = 4.5, 0.1, 0.32
+#: distribution, the largest share of them that is clipped, and the share of the bar that they take;
+#: share up to which they are a few, and the shares of the bar that more of them take, on one side
+#: of the others and on both.
+FENCE, MOST_OUTSIDE, LEAST_FREED, FEW, FREED_BY_MANY = 4.5, 0.1, 0.32, 0.002, (0.75, 0.45)
 #: Ratio of the 98th percentile to the median from which lengths have a logarithmic bar, and the
 #: ratio of its ends at most.
 SKEWED, DECADES = 10.0, 100.0
@@ -146,8 +148,9 @@ def range_shown(values: Array, *, lengths: bool = False, amounts: bool = False) 
     apart = least.sum() > max(APART * len(values), 0.5 * below.sum())
     is_apart = cut[0] and bool(apart)
     freed = 1 - (fences[1] - fences[0]) / ((high - low) or 1.0)
-    is_few = np.mean(below | above) <= MOST_OUTSIDE
-    if not step or not is_few or (freed < LEAST_FREED and not is_apart):
+    outside = np.mean(below | above)
+    needed = LEAST_FREED if outside <= FEW else FREED_BY_MANY[all(cut)]
+    if not step or outside > MOST_OUTSIDE or (freed < needed and not is_apart):
         return Range(*even_ends(low, high))
     ends = (
         _rounded(fences[0] if cut[0] else low, step, np.floor),

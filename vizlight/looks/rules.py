@@ -72,6 +72,10 @@ def _is_flat(contents: Contents) -> bool:
     return contents.flat_axis is not None
 
 
+def _is_flat_flow(contents: Contents) -> bool:
+    return _is_flat(contents) and not contents.is_strained
+
+
 def _is_terrain(contents: Contents) -> bool:
     # Shadows are followed over grids.
     return contents.flat_axis == 2 and (contents.raster or bool(dimensions(contents.mesh)))
@@ -94,8 +98,8 @@ def _is_part(contents: Contents) -> bool:
 
 
 def _is_loaded(contents: Contents) -> bool:
-    vectors = contents.first("vectors")
-    return _is_volume(contents) and vectors is not None and vectors.is_load
+    has_vectors = contents.first("vectors") is not None
+    return _is_volume(contents) and has_vectors and contents.flow is None
 
 
 #: The table. Of a question that is given, the first row with that question counts.
@@ -109,7 +113,7 @@ RULES = (
          "points with values"),
     Rule("points", _is_points, "none", ("vectors",), lines.points, "points with vectors"),
     Rule("points", _is_points, "shape", (), lines.points, "points without values"),
-    Rule("sheet", _is_flat, "direction", ("vectors",), fields.vectors, "a map with vectors"),
+    Rule("sheet", _is_flat_flow, "direction", ("vectors",), fields.vectors, "a map with vectors"),
     Rule("sheet", _is_terrain, "relief", ("heights",), reliefs.relief, "a map of heights"),
     Rule("sheet", _is_flat, "none", ("values", "heights", "kinds", "colors"), surfaces.values,
          "a map of values"),

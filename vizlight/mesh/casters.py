@@ -149,10 +149,11 @@ class FieldCaster:
         self.depth = _depth(options.depth, height_field.default_depth(inner))
         self.points = heights.points()
         covered = np.isfinite(heights.z)
-        # Rows times a rotation are turned by its transpose, here back to the axes of the mesh.
-        upright = heights.to_points(
-            np.where(covered[..., np.newaxis], self._inner(self._normal) @ self._turn, 0)
-        )
+        upright = self._inner(self._normal)
+        if heights.turn is not None:
+            # Rows times a rotation are turned by its transpose, here back to the axes of the mesh.
+            upright = upright @ self._turn
+        upright = heights.to_points(np.where(covered[..., np.newaxis], upright, 0))
         # Interpolated from the nodes around, normals are shorter than 1.
         self.normals = kernels.unit_rows(upright) if sampled else upright
         self.valid: Bools = heights.covered() & (heights.to_points(covered * 1.0) > 0)

@@ -291,10 +291,8 @@ _USUAL = (
     *((rf"(var|param|code)({n}|{n + 1})()", f"{n} {n + 1}") for n in (131, 165, 180, 229, 246)),
     (_ANY, "u v w"),
 )
-#: Names of places and of sizes of cells, which end as components do.
-_NO_COMPONENT = (
-    r"ma[xy]|(.*[_\W])?([xyzh][_\W]|(x?lat|x?long?|mask|mapfac|angle|area|depth)[_\W]?)[muv][xy]?"
-)
+#: Names of places, of sizes of cells and of properties of rock along axes, which end as components.
+_NO_COMPONENT = r"ma[xy]|(perm\w*|tran\w*|mult|k)[_\W]?[xyz]|(.*[_\W])?([xyzh][_\W]|(x?lat|x?long?|mask|mapfac|angle|area|depth)[_\W]?)[muv][xy]?"
 #: A knot in metres a second.
 _KNOT = 1852 / 3600
 #: Letters of axes that stand anywhere in names, if their unit is one of motion or of stress.

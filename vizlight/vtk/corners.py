@@ -23,8 +23,8 @@ FLAT = 1e-3
 LEAST = 1e-12
 #: Weight of the right corners of a square of unit sides, as those of its halves are weighted.
 RIGHT = np.sqrt(np.pi / 2)
-#: Number of corners that are worked on at once.
-CORNERS = 1 << 17
+#: Number of corners that are summed at once, and of those whose vectors fit in the cache.
+CORNERS, FEW = 1 << 17, 1 << 15
 
 
 def surface_normals(surface: vtkPolyData) -> Array:
@@ -123,9 +123,13 @@ def _add(total: Array, points: Raw, corners: Indices) -> None:
         corners = number.reshape(corners.shape)
         points = points[used]
     at = [np.ascontiguousarray(column) for column in corners.T]
-    places = [points.take(column, axis=0).T.astype(np.float64) for column in at]
-    with np.errstate(all="ignore"):
-        weighted = _of_quads(places) if len(at) == 4 else _of_polygons(places)
+    weighted = np.empty((len(at), 3, len(corners)))
+    for block in _pool.blocks(len(corners), max(FEW // len(at), 1)):
+        places = [points.take(column[block], axis=0).T.astype(np.float64) for column in at]
+        with np.errstate(all="ignore"):
+            normals = _of_quads(places) if len(at) == 4 else _of_polygons(places)
+        for into, normal in zip(weighted, normals, strict=True):
+            into[:, block] = normal
     for i, normal in enumerate(weighted):
         for k in range(3):
             # Faster than np.add.at, as long as a block has points near each other.
@@ -149,15 +153,19 @@ def _of_quads(places: Sequence[Array]) -> list[Array]:
     short = [np.maximum(1 - kernels.dot(side, side) / longest, 0) for side in diagonals]
     weighted: list[Array] = []
     for i in range(4):
-        corner = kernels.cross(sides[i - 1], sides[i]) / area
+        corner = kernels.cross(sides[i - 1], sides[i])
+        corner /= area
         # Sides in one line have no plane of their own, and at a dent their product points to the
         # back of the face.
         flat = kernels.dot(corner, face) * area <= FLAT * np.maximum(squares[i], squares[i - 1])
-        normal = corner + np.where(flat, 1, short[i % 2]) * (face - corner)
+        normal = face - corner
+        normal *= np.where(flat, 1, short[i % 2])
+        normal += corner
         near = lengths[i] * lengths[i - 1]
         normal *= height * (area / near) / np.sqrt(near)
         # Corners of points that are not finite say nothing, but must not spoil those around them.
-        normal[:, ~np.isfinite(normal).all(axis=0)] = 0
+        if not np.isfinite(normal).all():
+            normal[:, ~np.isfinite(normal).all(axis=0)] = 0
         weighted.append(normal)
     twice = np.flatnonzero(np.minimum.reduce(squares) == 0)
     if len(twice):

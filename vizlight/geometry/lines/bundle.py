@@ -7,19 +7,19 @@ Lambert). The sum is taken on a grid in the light's own frame: each piece of a l
 the 8 voxels around it, the voxels are summed along the light, and the sum is read at a point from
 the 8 voxels around that. All lengths are in voxels.
 
-Two corrections are in closed form. A point of a line does not shade itself: the mean share of both
-halves of its line in its depth follows from the hat function of the voxels, from the direction of
-each half and from the place where it ends, and so does that of its free ends. A long straight line
-adds 1/3. And lines are spread at random within a voxel, so the mean of the exponential is above the
-exponential of the mean, which a factor ``1 + d / 4`` of the depth makes up for: it stands for the
-lines, d wide, that lie in one another's shadow.
+Two corrections are made. A point of a line does not shade itself: the share of both halves of its
+line in its depth follows from the hat functions of the voxels, from the place of the point in its
+voxel, from the direction of each half and from the place where it ends, and so does that of its
+free ends. A long straight line adds 1/3 in the mean over all places. And lines are spread at random
+within a voxel, so the mean of the exponential is above the exponential of the mean, which a factor
+``1 + d / 4`` of the depth makes up for: it stands for the lines, d wide, that lie in one another's
+shadow.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -136,7 +136,7 @@ def summed(grid: Array) -> Array:
 
 def voxel_depths(
     middles: Array, vectors: Array, places: Array, frame: Array, discs: Array | None = None, /
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array, VoxelColumns]:
     """Return the length of pieces, across a direction, on either side of places.
 
     Parameters
@@ -154,6 +154,8 @@ def voxel_depths(
     -------
     forth, back : ndarray of float32, shape (N,)
         Sums along the direction and against it.
+    columns : VoxelColumns
+        Voxels at the places.
     """
     # For so few rows a product of matrices takes twice as long.
     turned, at = (np.einsum("ij,jk->ik", frame, rows) for rows in (middles, places))
@@ -171,12 +173,12 @@ def voxel_depths(
     back = read(grid, cells)
     # The sums of all stand in two layers, so that they are read like a grid.
     cells[2] = 0
-    return read(np.stack([total, total], axis=2), cells) - back, back
+    forth = read(np.stack([total, total], axis=2), cells) - back
+    return forth, back, VoxelColumns(cells[:2] - np.floor(cells[:2]), frame)
 
 
-#: Mean square of the hat function of voxels across a line, and numbers of lengths and of angles in
-#: the table of the depth that half a line adds to its own.
-ACROSS, LENGTHS, ANGLES = 2 / 3, 65, 65
+#: Places along half a line from -1 to 1, and weights, by which its own depth is summed.
+NODES = (*zip(*np.polynomial.legendre.leggauss(4), strict=True),)
 #: Half of the area of a disc of diameter 1, and how far a half of a line may bend for its free end
 #: to count as ahead, as a share of its length.
 DISC, STRAIGHT = np.pi / 8, 0.05
@@ -209,6 +211,29 @@ def directions(count: int, /) -> Array:
     z = (number + 0.5) / len(number)
     r = np.sqrt(1 - z * z)
     return np.stack([r * np.cos(GOLDEN * number), r * np.sin(GOLDEN * number), z], axis=1)
+
+
+class VoxelColumns(NamedTuple):
+    """The voxels at points, which stand in columns toward a light.
+
+    Attributes
+    ----------
+    place : ndarray of float32, shape (2, N)
+        Place of each point in its voxel, across the light, from 0 to 1.
+    axes : ndarray of float32, shape (3, 3) or (3, 3, N)
+        Rows that turn a vector into voxels across the light, and into its part toward the light.
+    area : ndarray, shape (N,), or float
+        Area of a voxel across the light, in voxels of the medium.
+    """
+
+    place: Array
+    axes: Array
+    area: Array | float = 1.0
+
+    def of(self, vectors: Array) -> Array:
+        """Return vectors in columns, in voxels across the light and toward it."""
+        rows: Array = np.einsum("ki...,i...->k...", self.axes.reshape(3, 3, -1), vectors)
+        return rows
 
 
 class Targets(NamedTuple):
@@ -266,83 +291,60 @@ class Targets(NamedTuple):
             None if self.halves is None else np.take(self.halves, order, axis=2),
         )
 
-    def own_depth(
-        self, toward: Array, width: Array | float = 1.0, thick: float = 0.0
-    ) -> Array | float:
+    def own_depth(self, columns: VoxelColumns, thick: float = 0.0) -> Array | float:
         """Return the depth per diameter that the line of a point adds at the point itself.
 
         Parameters
         ----------
-        toward : ndarray, shape (3,) or (3, N)
-            Unit direction.
-        width : ndarray, shape (N,), or float
-            Width of the voxels at the points, in voxels of the medium.
+        columns : VoxelColumns
+            Voxels at the points.
         thick : float
             Diameter of the lines in voxels; 0 for lines without free ends.
 
         Returns
         -------
         ndarray, shape (2, N), or 0.0
-            Depths toward the direction and toward its opposite.
+            Depths toward the light and away from it.
         """
         if self.halves is None:
             return 0.0
-        forth, back = np.zeros((2, self.places.shape[1]))
+        depths = np.zeros((2, self.places.shape[1]), np.float32)
         disc: Array | float = 0.0
         if thick and self.vectors is not None:
-            cosine = np.einsum("i...,i...->...", toward.reshape(3, -1), self.vectors)
-            disc = DISC * thick / width * np.abs(cosine)
+            disc = DISC * thick * np.abs(columns.of(self.vectors)[2])
         for *rows, free in self.halves:
             half = np.stack(rows)
-            along = np.einsum("i...,i...->...", toward.reshape(3, -1), half)
+            x, y, along = columns.of(half)
             across = np.sqrt(np.maximum(np.einsum("ij,ij->j", half, half) - along * along, 0))
-            ahead, whole = _half(across / width, np.arctan2(along, across))
-            end = free * disc * _spline(across / width)
-            before = end * _passed(along / width)
-            # What is ahead of a point in one direction is behind it in the other.
-            forth, back = forth + ahead + before, back + whole - ahead + end - before
-        # A depth per diameter is a length over an area, so in wider voxels it is less in
-        # proportion.
-        depths: Array = np.stack([forth, back]) * (ACROSS / width)
-        return depths.astype(np.float32)
+            # Beyond two voxels to a side nothing is read.
+            part = 1 / np.maximum(np.maximum(np.abs(x), np.abs(y)) / 2, 1)
+            for node, weight in NODES:
+                step = np.float32(node / 2 + 0.5) * part
+                depth = np.float32(weight / 2) * part * across
+                depths += _parted(columns.place, step * x, step * y, step * along, depth)
+            if thick:
+                depths += _parted(columns.place, x, y, along, free * disc)
+        return depths / columns.area
 
 
-def _half(reach: Array, angle: Array) -> tuple[Array, Array]:
-    """Return the depth that half a line adds at its own start, from one and from either side.
+def _parted(place: Array, x: Array, y: Array, along: Array, depth: Array) -> Array:
+    """Return the depth read at places of a piece a step away, before it and behind it, in rows.
 
-    ``reach`` is its length across the light in voxels, ``angle`` its elevation toward the light.
+    Along the light it is that of a spread and a reading by hat functions in the mean over all
+    places, the sum of a cubic B-spline.
     """
-    table = _halves()
-    row = np.minimum(reach, 2.0) * ((LENGTHS - 1) / 2)
-    column = (angle / np.pi + 0.5) * (ANGLES - 1)
-    i = np.minimum(row.astype(np.intp), LENGTHS - 2)
-    j = np.clip(column.astype(np.intp), 0, ANGLES - 2)
-    u, v = row - i, column - j
-    low, high = (table[i + k, j] + v * (table[i + k, j + 1] - table[i + k, j]) for k in (0, 1))
-    # Straight toward the light and straight away together: the whole of the spread line.
-    first, last = (table[i + k, 0] + table[i + k, -1] for k in (0, 1))
-    return low + u * (high - low), first + u * (last - first)
+    depth = depth * _met(place[0], x) * _met(place[1], y)
+    ahead = depth * _passed(along)
+    # What is ahead of a point in one direction is behind it in the other.
+    return np.stack([ahead, depth - ahead])
 
 
-@cache
-def _halves() -> Array:
-    """Return the table of :func:`_half`, its angles from straight away to straight toward.
-
-    A piece at a distance v across the light and v tan(a) along it is spread and read by hat
-    functions, in the mean over the places of the grid by a cubic B-spline of v; the sum along the
-    light is that of the spline.
-    """
-    fine = 8
-    v = np.linspace(0, 2, fine * (LENGTHS - 1) + 1)
-    angles = np.linspace(-np.pi / 2, np.pi / 2, ANGLES)
-    values = _spline(v)[:, np.newaxis] * _passed(v[:, np.newaxis] * np.tan(angles))
-    steps = (values[1:] + values[:-1]) / 2 * (v[1] - v[0])
-    return np.concatenate([np.zeros((1, ANGLES)), np.cumsum(steps, axis=0)])[::fine]
-
-
-def _spline(v: Array) -> Array:
-    """Return the cubic B-spline at distances of 0 or more."""
-    return np.where(v < 1, 2 / 3 - v * v + v**3 / 2, np.maximum(2 - v, 0) ** 3 / 6)
+def _met(place: Array, step: Array) -> Array:
+    """Return the value read at a place in a voxel, of 1 that is spread a step from it."""
+    at = place + step
+    low, high = np.maximum(1 - np.abs(at), 0), np.maximum(1 - np.abs(at - 1), 0)
+    depth: Array = (1 - place) * low + place * high
+    return depth
 
 
 def _passed(along: Array) -> Array:
@@ -419,7 +421,7 @@ class Medium:
 
     def depths(
         self, places: Array, toward: VectorLike, thick: float = 0.0, /
-    ) -> tuple[Array, Array]:
+    ) -> tuple[Array, Array, VoxelColumns]:
         """Return the optical depth per diameter toward a direction and toward its opposite.
 
         Parameters
@@ -435,6 +437,8 @@ class Medium:
         -------
         forth, back : ndarray of float32, shape (N,)
             Depths, the point's own line included; diameters and depths are in voxels.
+        columns : VoxelColumns
+            Voxels at the places.
         """
         frame = _frame(toward).astype(np.float32)
         discs = np.float32(DISC * thick) * self.free
@@ -525,31 +529,24 @@ class Medium:
     def _light(self, targets: Targets, thick: float, place: VectorLike, near: bool) -> Array:
         """Return the share of a light that is left."""
         if not near:
-            # The last row of the frame is the direction with length 1, whatever length was given.
-            toward = _frame(place)[2].astype(np.float32)
-            depth, _ = self.depths(targets.places, toward, thick)
-            line = _ahead(targets.own_depth(toward, thick=thick))
-            return _left(depth, line, _crowded(thick))
+            depth, _, columns = self.depths(targets.places, place, thick)
+            return _left(depth, _ahead(targets.own_depth(columns, thick)), _crowded(thick))
         # A lamp at a place has a fan of rays: voxels of a cube map around it in place of a box.
         lamp = (np.asarray(place, np.float64) - self.origin) / self.voxel
         discs = DISC * thick * self.free
-        depth, width = depths(self.middles, self.vectors, targets.places, lamp, thick, discs)
-        way = lamp[:, np.newaxis] - targets.places
-        # A point at the lamp itself has no direction toward it, and nothing is divided by 0.
-        way /= np.maximum(size(way), NARROWEST)
-        width = np.maximum(width, NARROWEST)
+        depth, columns = depths(self.middles, self.vectors, targets.places, lamp, thick, discs)
+        line = _ahead(targets.own_depth(columns, thick))
         # The depth has the factor for crowded lines, and so must the depth subtracted from it.
-        line = _ahead(targets.own_depth(way.astype(np.float32), width, thick))
-        line *= crowding(thick / width)
+        line *= crowding(thick / np.sqrt(columns.area))
         return _left(depth, line, thick)
 
     def _pair(self, targets: Targets, thick: float, toward: Array) -> tuple[Array, Array]:
         """Return the weighted share of light from a direction and its opposite, and the weight."""
         toward = toward.astype(np.float32)
         facing = targets.facing(toward)
-        depths = np.stack(self.depths(targets.places, toward, thick))
-        own = targets.own_depth(toward, thick=thick)
-        forth, back = _left(depths, own, _crowded(thick))
+        *depths, columns = self.depths(targets.places, toward, thick)
+        own = targets.own_depth(columns, thick)
+        forth, back = _left(np.stack(depths), own, _crowded(thick))
         # Light from each end counts by the share of it that the point would receive.
         return facing[0] * forth + facing[1] * back, facing.sum(axis=0)
 
@@ -558,9 +555,9 @@ class Medium:
         total = np.zeros(targets.places.shape[1])
         ways = directions(count)
         for way in ways:
-            forth, back = self.depths(targets.places, way)
+            forth, back, columns = self.depths(targets.places, way)
             # Without the point's own line, which does not dim it however crowded the lines are.
-            total += (forth + back) / 2 - np.mean(targets.own_depth(way.astype(np.float32)), axis=0)
+            total += (forth + back) / 2 - np.mean(targets.own_depth(columns), axis=0)
         return float(np.median(total[targets.finite]) / len(ways)) if targets.finite.any() else 0.0
 
 
@@ -721,7 +718,7 @@ NARROWEST = 1e-6
 def depths(
     middles: Array, vectors: Array, places: Array, lamp: VectorLike, thick: float = 0.0,
     discs: Array | None = None, /,
-) -> tuple[Array, Array]:  # fmt: skip
+) -> tuple[Array, VoxelColumns]:  # fmt: skip
     """Return the optical depth per diameter between points and a light nearby.
 
     The grid has the light in its centre: on each of the six faces of a cube around it, voxels are
@@ -746,17 +743,20 @@ def depths(
     -------
     depth : ndarray of float32, shape (N,)
         Depths, the point's own line included.
-    width : ndarray of float32, shape (N,)
-        Width of the voxels at the points, in voxels of the medium.
+    columns : VoxelColumns
+        Voxels at the points.
     """
     centre = np.asarray(lamp, np.float64)[:, np.newaxis]
     at = places - centre
     # Distances of the pieces and of the points from the light.
     gone, far = size(middles - centre), size(at)
     out = np.zeros(at.shape[1], np.float32)
-    widths: Array = np.ones(at.shape[1], np.float32)
+    place, axes = np.zeros((2, at.shape[1]), np.float32), np.zeros((3, 3, at.shape[1]), np.float32)
+    area: Array = np.ones(at.shape[1], np.float32)
+    # A point at the light itself has no direction toward it, and nothing is divided by 0.
+    axes[2] = -at / np.maximum(far, NARROWEST)
     if not gone.size:
-        return out, widths
+        return out, VoxelColumns(place, axes, area)
     # Width of a cone at distance 1: it grows to a voxel at the median distance of the pieces, or at
     # 1 where that is less.
     width = 1 / max(float(np.median(gone)), 1.0)
@@ -784,18 +784,24 @@ def depths(
                 seen, pieces = (
                     v[others] / (side * v[axis] * width) for v in (at[:, rows], middles[:, held])
                 )
-                out[rows] = _in_pyramid(seen, far[rows], pieces, gone[held], across[held], width)
-                height = side * at[axis, rows]
-                # The root of the area that a cone has across the light at the point, as for pieces
-                # below.
-                widths[rows] = width * height * np.sqrt(height / far[rows])
-    return out, widths
+                out[rows], place[:, rows] = _in_pyramid(
+                    seen, far[rows], pieces, gone[held], across[held], width
+                )
+                height = np.maximum(side * at[axis, rows], NARROWEST)
+                for row, other in enumerate(others):
+                    axes[row, other, rows] = 1 / (width * height)
+                    axes[row, axis, rows] = -side * seen[row] / height
+                # The area that a cone has across the light at the point, as for pieces below.
+                area[rows] = (width * height) ** 2 * height / np.maximum(far[rows], NARROWEST)
+    return out, VoxelColumns(place, axes, np.maximum(area, NARROWEST**2))
 
 
 def _in_pyramid(
     seen: Array, far: Array, held: Array, gone: Array, across: Array, width: float
-) -> Array:
+) -> tuple[Array, Array]:
     """Return the depth between a light and points, for pieces, in one of six pyramids around it.
+
+    And the places of the points in their voxels, across the light.
 
     Points and pieces are given by the tangents under which the light sees them, in widths of the
     cones into which the pyramid is cut, and by their distances from it.
@@ -807,7 +813,7 @@ def _in_pyramid(
     # Pieces that are farther from the light than every point stand in nobody's way.
     inside = ((held > low) & (held < high)).all(axis=0) & (gone < reach + 2)
     if not inside.any():
-        return np.zeros(len(far), np.float32)
+        return np.zeros(len(far), np.float32), np.zeros_like(seen)
     held, gone, across = held[:, inside], gone[inside], across[inside]
     # Height over the light of the plane that is divided into squares, in voxels.
     slant = np.sqrt(1 + width**2 * (held * held).sum(axis=0))
@@ -820,7 +826,8 @@ def _in_pyramid(
     summed(grid)
     cells = np.concatenate([seen, far[np.newaxis]]) - low
     limits = np.array(shape, np.float64)[:, np.newaxis] - 2
-    return read(grid, np.clip(cells, 0, limits).astype(np.float32))
+    cells = np.clip(cells, 0, limits).astype(np.float32)
+    return read(grid, cells), cells[:2] - np.floor(cells[:2])
 
 
 def size(rows: Array) -> Array:

@@ -67,8 +67,6 @@ DEBRIS = 0.003
 #: Percentiles of the values on the faces of a cut, and least share of those of the volume through
 #: which they run where they are worth a cut.
 MOST_OF_CUT, LEAST_OF_CUT = (10, 90), 0.1
-#: Share of its range through which a second array runs on an isosurface that shows it.
-LEAST_SPREAD = 0.02
 #: Drawing of an isosurface around a molecule, whose far side would hide it too, and normals that
 #: point out of it.
 CLEAR = {"opacity": 0.5, "culling": "back"}
@@ -95,7 +93,9 @@ class _Level(NamedTuple):
 
 
 def isosurface(case: Case) -> Drawing:
-    """Draw the isosurface through the steepest places, or three slices where none is good.
+    """Draw the isosurface through the steepest places, or slices where none is good.
+
+    Where the values that it encloses differ, the isosurface is cut open to them.
 
     The skin of a scan of a body tells least of it: bones are shown where their numbers are known,
     else the body is cut open.
@@ -115,6 +115,13 @@ def isosurface(case: Case) -> Drawing:
         mesh = Step("outward", ".compute_normals", mesh, **OUTWARD)
     if not level.is_sure and _is_crumbs(mesh.run()):
         return _cut_open(case) or slices(case, "; isosurfaces are crumbs")
+    # One that is asked for besides is shown on it.
+    second = case.contents.named(str(case.wishes.picture.get("scalars") or ""))
+    is_free = not level.is_sure and not has_molecule and not isinstance(level.at, tuple)
+    if second is None and is_free and not _is_of_scanner(case, array):
+        opened = _opened(case, level)
+        if opened is not None:
+            return replace(opened, notes=[*opened.notes, *level.notes])
     if not level.is_sure and _is_scan(case, array):
         mesh = _without_debris(mesh, level.notes)
     surface, box = _framed(whole, mesh, boxed=level.boxed)
@@ -128,14 +135,6 @@ def isosurface(case: Case) -> Drawing:
         both = Step("", "pyvista.MultiBlock", [mesh, balls])
         frame = case.wishes.camera(both, eye_around(mesh.run()))
         surface = replace(surface, wishes=replace(surface.wishes, frame=frame))
-    second = None if case.wishes.question == "shape" else _second(case, mesh.run())
-    if (
-        second is None and not isinstance(level.at, tuple) and not level.is_sure
-        and not has_molecule and not _is_of_scanner(case, array)
-    ):  # fmt: skip
-        opened = _opened(case, level.at, level.volume, boxed=level.boxed)
-        if opened is not None:
-            return replace(opened, notes=[*opened.notes, *level.notes])
     figure = "value"
     if isinstance(level.at, tuple):
         words = f"±{levels.number(level.at[1])}"
@@ -169,6 +168,8 @@ def _level(case: Case, array: Named) -> _Level | str:
         # Without active scalars VTK's filter ends the process.
         scan.attributes = {"active_scalars_name": array.name}
         volume = Step("smooth", ".gaussian_smooth", scan, std_dev=SMOOTH, scalars=array.name)
+    if (level := case.wishes.part.get("level")) is not None:
+        return _Level(level, volume, notes, not is_scan, is_sure=not is_auto)
     if is_auto and (size := _size_of_both_signs(values, volume, array)) is not None:
         if is_scan:
             volume = Step("closed", ".pad_image", volume, pad_value=0.0, scalars=array.name)
@@ -305,17 +306,6 @@ def _is_crumbs(mesh: pv.DataSet) -> bool:
     return len(sizes) > MOST_PIECES and sizes.max() < LARGE * sizes.sum()
 
 
-def _second(case: Case, isosurface: pv.DataSet) -> Named | None:
-    """Return the array of a volume, of values or kinds, that changes along an isosurface."""
-    for each in case.contents.arrays:
-        if each.role in ("values", "kinds") and each.name in isosurface.array_names:
-            low, high = range_of(isosurface, each.name)
-            # An array that is a function of the values of the isosurface has one value on it.
-            if high - low > LEAST_SPREAD * np.subtract(*range_of(case.data.run(), each.name)[::-1]):
-                return each
-    return None
-
-
 def _is_rough(case: Case, mesh: Step, camera: Step) -> bool:
     """Return whether the normals of an isosurface may turn too fast to be seen."""
     normals = mesh.run().compute_normals(**PLAIN_NORMALS)
@@ -329,7 +319,7 @@ def slices(case: Case, why: str = "") -> Drawing:
     eye = case.eye(case.data)
     camera = case.camera(box, eye, boxed=True)
     cut, outside = _parts_of_cut(case, case.data, eye)
-    drawing = _of_cut(case, cut, camera, case.data)
+    drawing = _of_cut(case, cut, outside, camera, case.data)
     first, *strokes = drawing.layers
     faces = replace(case, data=outside, contents=Contents(outside.run()))
     layers = [first, Layer(outside, first.keywords), *strokes, *case.strokes([faces.creases])]
@@ -337,21 +327,22 @@ def slices(case: Case, why: str = "") -> Drawing:
     return replace(drawing, layers=[*layers, *case.boxed(box, camera)], words=words)
 
 
-def _opened(case: Case, level: float, volume: Step, *, boxed: bool) -> Drawing | None:
+def _opened(case: Case, level: _Level) -> Drawing | None:
     """Draw an isosurface without its corner toward the eye, in the colours of the values inside.
 
     None where these are much the same.
     """
-    array, wishes = case.needed_array, case.wishes
-    eye = case.eye(volume)
-    cut, outside = _parts_of_cut(case, volume, eye, level)
-    if _is_even(cut.run(), volume.run(), array.name):
+    array, wishes, at = case.needed_array, case.wishes, level.at
+    assert not isinstance(at, tuple)
+    eye = case.eye(level.volume)
+    cut, outside = _parts_of_cut(case, level.volume, eye, at)
+    if _is_even(cut.run(), level.volume.run(), array.name):
         return None
     sides = Contents(outside.run()).sides
-    boxed = boxed and max(sides) > LEAST_OF_BOX * max(case.contents.sides)
+    boxed = level.boxed and max(sides) > LEAST_OF_BOX * max(case.contents.sides)
     box = Step("box", ".outline", case.data)
     camera = case.camera(box if boxed else outside, eye, boxed=boxed)
-    drawing = _of_cut(case, cut, camera, cut)
+    drawing = _of_cut(case, cut, outside, camera, cut)
     first, *strokes = drawing.layers
     lit = replace(case, data=outside, contents=Contents(outside.run()), question="value")
     light = wishes.light_of_surface()
@@ -359,11 +350,11 @@ def _opened(case: Case, level: float, volume: Step, *, boxed: bool) -> Drawing |
     layers = [first, Layer(outside, first.keywords | lamp), *strokes]
     (key,) = drawing.keys
     _, unit = parted(str(key["title"]))
-    title = f"{key['title']}; surface: {levels.number(level)} {unit}".rstrip()
+    title = f"{key['title']}; surface: {levels.number(at)} {unit}".rstrip()
     return replace(
         drawing,
         layers=[*layers, *(case.boxed(box, camera) if boxed else [])],
-        words=f"isosurface {array.name} = {levels.number(level)}, with the values inside",
+        words=f"isosurface {array.name} = {levels.number(at)}, with the values inside",
         keys=[key | {"title": title}],
     )
 
@@ -385,7 +376,7 @@ def _toward(case: Case, mesh: Step, eye: Viewpoint) -> tuple[float, ...]:
     return tuple(np.round(way, 3).tolist())
 
 
-def _of_cut(case: Case, cut: Step, camera: Step, valued: Step) -> Drawing:
+def _of_cut(case: Case, cut: Step, outside: Step, camera: Step, valued: Step) -> Drawing:
     """Return the drawing of the faces of a cut, in colours for the values of a mesh."""
     array, is_gray = case.needed_array, _is_gray(case, case.needed_array)
     scene = case.wishes.scene("none", camera)
@@ -393,7 +384,8 @@ def _of_cut(case: Case, cut: Step, camera: Step, valued: Step) -> Drawing:
     drawn = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     faces = replace(case, data=cut, contents=Contents(cut.run()))
     layers = [Layer(cut, drawn), *case.strokes([faces.borders, faces.creases])]
-    lit = case.lit(cut, scene, **case.wishes.light_of_surface())
+    both = Step("both", ".append_polydata", cut, outside)
+    lit = case.lit(both, scene, **case.wishes.light_of_surface())
     notes = [note] if note else []
     return Drawing(layers, camera, scene, lit, "", [case.bar(array, colors)], notes)
 

@@ -1,0 +1,61 @@
+"""Tests of stresses of solids."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+from scipy.spatial.transform import Rotation
+
+import vizlight
+from vizlight import files
+from vizlight.mesh.stresses import VON_MISES
+
+
+def bar(rows, name="S_Centroid"):
+    """Bar of two cells with rows of an array of cells."""
+    mesh = pv.ImageData(dimensions=(3, 2, 2), spacing=(5, 1, 1)).cast_to_unstructured_grid()
+    mesh.cell_data[name] = np.asarray(rows, dtype=float)
+    return mesh
+
+
+def test_tension_is_itself_and_pressure_from_all_sides_is_nothing():
+    mesh = files.with_von_mises(bar([[3, 0, 0, 0, 0, 0], [-4, -4, -4, 0, 0, 0]]), "S_Centroid")
+    assert mesh[VON_MISES] == pytest.approx([3, 0])
+    assert mesh.active_scalars_name == VON_MISES
+
+
+def test_it_is_the_same_in_every_frame_and_form():
+    random = np.random.default_rng(3)
+    tensor = random.normal(size=(3, 3))
+    tensor += tensor.T
+    principal = np.linalg.eigvalsh(tensor)
+    expected = np.sqrt(np.sum((principal - np.roll(principal, 1)) ** 2) / 2)
+    turn = Rotation.from_rotvec(random.normal(size=3)).as_matrix()
+    for each in (tensor, turn @ tensor @ turn.T):
+        xx, yy, zz, xy, xz, yz = each[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+        for row in ([xx, yy, zz, xy, xz, yz], [xx, yy, zz, yz, xy, xz], each.ravel()):
+            got = files.with_von_mises(bar([row] * 2, "stress"), "stress")[VON_MISES]
+            assert got == pytest.approx([expected] * 2)
+    flat = files.with_von_mises(bar([[xx, yy, zz, xy]] * 2), "S_Centroid")[VON_MISES]
+    full = files.with_von_mises(bar([[xx, yy, zz, xy, 0, 0]] * 2), "S_Centroid")[VON_MISES]
+    assert flat == pytest.approx(full)
+
+
+def test_a_solid_with_stresses_shows_them_whatever_moves_it():
+    mesh = bar([[1, 0, 0, 0, 0, 0], [2, 0, 0, 0, 0, 0]])
+    # Reaction forces and displacements, as a solver of mechanics names them.
+    mesh["RF"] = np.random.default_rng(0).normal(size=(mesh.n_points, 3))
+    mesh["U"] = mesh["RF"] / 10
+    before = mesh.copy()
+    look = vizlight.look(mesh)
+    assert (look.shown, look.array) == ("hull", VON_MISES)
+    assert mesh == before
+    assert 'files.with_von_mises(mesh, "S_Centroid")' in look.script("a.png")
+    # Who has it, needs no other.
+    mesh.cell_data["S_Mises"] = [1.0, 2.0]
+    assert vizlight.look(mesh).array == "S_Mises"
+
+
+def test_an_array_that_is_no_tensor_is_named():
+    mesh = bar([[1.0, 2, 3], [4, 5, 6]], "U")
+    with pytest.raises(ValueError, match="name: expected an array of tensors of 4, 6 or 9 columns"):
+        files.with_von_mises(mesh, "U")
