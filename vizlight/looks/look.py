@@ -520,8 +520,8 @@ def _look_of(rule: Rule, case: Case, drawing: Drawing, notes: Sequence[str]) -> 
     drawing = replace(drawing, notes=[*notes, *drawing.notes])
     place = case.place_of_cut(drawing.camera)
     if place and drawing.keys and drawing.keys[0].get("title"):
-        first, *others = drawing.keys
-        drawing = replace(drawing, keys=[first | {"title": f"{first['title']}; {place}"}, *others])
+        first, *more = drawing.keys
+        drawing = replace(drawing, keys=[first | {"title": f"{first['title']}; {place}"}, *more])
     array = None if case.array is None else case.array.name
     seen = "" if case.wishes.frame else drawing.camera.note
     reason = rule.why + (f"; seen {seen}" if seen else "")

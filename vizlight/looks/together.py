@@ -77,7 +77,7 @@ def _identity(case: Case, array: Named) -> str:
 
 
 def seen_through(cases: Sequence[Case], drawings: Sequence[Drawing]) -> list[Drawing]:
-    """Return drawings of which closed surfaces let what lies inside them be seen."""
+    """Return drawings in which closed surfaces around other data are see-through."""
     seen = []
     for outer, drawing in zip(cases, drawings, strict=True):
         surface = outer.surface.run() if outer.contents.dimension == 2 else None

@@ -322,7 +322,11 @@ class Wishes:
         volume, name, note = mesh.run(), keywords["contour"], ""
         if "level" not in keywords and isinstance(name, str) and name in volume.array_names:
             is_scalar = np.ndim(volume[name]) == 1 and volume[name].dtype.kind in "iuf"
-            level, contrast = levels.best_level(volume, name) if is_scalar else (0.0, 0.0)
+            is_scan = meaning.ways(volume) == (*meaning.ANATOMY.values(),)
+            share = levels.THIN if is_scan else 1.0
+            level, contrast = (0.0, 0.0)
+            if is_scalar:
+                level, contrast = levels.best_level(volume, name, share=share)
             if contrast > 0:
                 keywords["level"] = level
                 note = f"the level of {name} is {levels.number(level)}, where it is steepest"

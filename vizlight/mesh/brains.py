@@ -267,7 +267,7 @@ def mark_as_body(grid: pv.DataSet, word: str, affine: AnyArray) -> None:
     ----------
     grid : pyvista.DataSet
     word : str
-        Name of what in the header of its file says so.
+        Name of the part of the header that says so.
     affine : ndarray, shape (4, 4)
         Matrix by which the file stores it.
     """

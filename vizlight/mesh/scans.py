@@ -24,7 +24,10 @@ _LETTERS = re.compile(r"[RLAPSI]{3}")
 #: Bytes in which the header of a file is sought, end of that of NRRD, its word for numbers in
 #: letters, and fields of a segment.
 _HEAD = 1 << 16
-_BLANK, _IN_LETTERS = re.compile(rb"\r?\n\r?\n"), re.compile(r"(?mi)^encoding: *(ascii|te?xt)\s*$")
+_BLANK, _IN_LETTERS = (
+    re.compile(rb"\r?\n\r?\n"),
+    re.compile(r"(?mi)^encoding: *(ascii|text|txt)\s*$"),
+)
 _SEGMENT = re.compile(r"(?m)^Segment(\d+)_(Name|LabelValue|Color):=(.*)$")
 
 

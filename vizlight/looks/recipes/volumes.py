@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 LEAST_OF_BOX = 0.4
 #: Fewest voxels along each side of a scan, and the most of its sides that it closes.
 VOXELS, MOST_CLOSED = 30, 0.4
-#: Share of the steepness of the best level at which scans are drawn: thin parts are dark.
-THIN = 0.9
 #: Numbers of air and bone in computed tomography, in Hounsfield units, and how near to that of air
 #: others are its own; least share of air, and shares of bone, of such a scan.
 AIR, BONE, NEAR_AIR, MUCH_AIR, BONES = -1000.0, 300.0, 50.0, 0.05, (0.002, 0.3)
@@ -188,7 +186,7 @@ def _level(case: Case, array: Named) -> _Level | str:
     elif is_scan and is_auto and _is_gray(case, array) and _is_compact(case, array):
         return ""
     else:
-        share = THIN if is_scan else 1.0
+        share = levels.THIN if is_scan else 1.0
         level, contrast = levels.best_level(volume.run(), array.name, share=share)
     if contrast < levels.GOOD:
         return f"; no isosurface stands out (the steepest is {contrast:.1f} times the mean)"
