@@ -140,6 +140,12 @@ def black():
     return np.zeros((20, 20, 3), np.uint8)
 
 
+def strained():
+    mesh = pv.ImageData(dimensions=(3, 3, 3))
+    mesh["S"] = np.arange(162.0).reshape(27, 6)
+    return mesh
+
+
 def block():
     """Return a volume of values."""
     volume = pv.ImageData(dimensions=(4, 3, 2))
@@ -270,6 +276,7 @@ OWN = {
     "molecules.backbone": {"atoms": chain},
     "montages.side_by_side": {"volume": block, "name": "v"},
     "molecules.atoms_in": {"volume": orbital},
+    "stresses.with_von_mises": {"mesh": strained, "name": "S"},
     "both_sides.both_sides": {"surface": ball, "names": ("a", "b")},
     "box_axes.box_axes": {"size": 10.0},
     "box_axes.captions": {"meshes": lambda: pv.MultiBlock({"a": ball()}), "size": 10.0},

@@ -33,7 +33,7 @@ def test_few_values_far_outside_lie_beyond_the_ends():
 
 
 def test_a_long_tail_of_many_values_is_seen_to_its_end():
-    # As grades of ore are: those that are sought are far above most others.
+    # As grades of minerals are: those that are sought are far above most others.
     values = np.random.default_rng(0).lognormal(-0.5, 0.8, 4000)
     assert np.mean(values > 3) > 0.02
     shown = range_shown(values)

@@ -181,7 +181,7 @@ class Contents:
 
     @cached_property
     def flow(self) -> Named | None:
-        """The best array of vectors, None where they displace or load a solid, or there are none.
+        """The best array of vectors, None for those that displace or load a solid.
 
         Those of a mesh with stresses are such whatever their names are.
         """

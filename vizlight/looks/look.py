@@ -404,12 +404,12 @@ def look(
         Further options. How files and data of xarray are read: ``time``, ``overlay``, ``at``,
         ``nodata``, as by :func:`vizlight.read`. Parts of the data: ``slice`` and ``clip`` (a plane,
         ``"z:4"`` or a normal and an origin), ``threshold`` (``"Temp:300:600"`` or a name and two
-        numbers), ``contour``, ``level`` (of an isosurface), ``warp``, ``exaggeration``, ``globe`` (a map of the whole
-        earth on a ball, a raised one with ``warp`` or ``exaggeration``). The light: ``scene``, and
-        options of :func:`vizlight.illuminate` or of the filter of the question, such as
-        ``tangents``. The picture: ``background``, ``line_width``, ``cmap``, ``clim``, ``key``,
-        ``map_parts`` (those that are drawn of "coasts", "frame" and "isolines"; () for none),
-        ``up``, ``parallel``, ``zoom``, ``backend``.
+        numbers), ``contour``, ``level`` (of an isosurface), ``warp``, ``exaggeration``, ``globe``
+        (a map of the whole earth on a ball, a raised one with ``warp`` or ``exaggeration``). The
+        light: ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the
+        question, such as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``,
+        ``clim``, ``key``, ``map_parts`` (those that are drawn of "coasts", "frame" and "isolines";
+        () for none), ``up``, ``parallel``, ``zoom``, ``backend``.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Volumes without the corner toward the eye: the faces of the cut, and what is left outside."""
+"""Volumes without the corner toward the eye: the faces of the cut, and the outside."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def without_corner(
     level: float | None = None,
     toward: Sequence[float] = (1.0, 1.0, 1.0),
 ) -> pv.MultiBlock:
-    """Return a volume, or what an isosurface encloses, with the corner toward an eye taken out.
+    """Return a volume, or the inside of an isosurface, without the corner toward an eye.
 
     Parameters
     ----------
@@ -122,11 +122,11 @@ def without_corner(
     name : str
         Name of an array of one number per point, or per cell where there is no level.
     level : float, optional
-        Level of the isosurface. What is above it is left, or what is below it where less of the
-        outer surface of the volume is. Default: all of the volume is left.
+        Level of the isosurface. Values above it are left, or those below it where fewer of those
+        on the outer surface of the volume are. Default: all of the volume is left.
     toward : sequence of 3 float, default: (1, 1, 1)
         Direction toward the eye. Along each axis along which it points, the half on its side is
-        taken out, from the middle of the box of what is left.
+        taken out, from the middle of its box.
 
     Returns
     -------

@@ -292,7 +292,10 @@ _USUAL = (
     (_ANY, "u v w"),
 )
 #: Names of places, of sizes of cells and of properties of rock along axes, which end as components.
-_NO_COMPONENT = r"ma[xy]|(perm\w*|tran\w*|mult|k)[_\W]?[xyz]|(.*[_\W])?([xyzh][_\W]|(x?lat|x?long?|mask|mapfac|angle|area|depth)[_\W]?)[muv][xy]?"
+_NO_COMPONENT = (
+    r"ma[xy]|(perm\w*|tran\w*|mult|k)[_\W]?[xyz]"
+    r"|(.*[_\W])?([xyzh][_\W]|(x?lat|x?long?|mask|mapfac|angle|area|depth)[_\W]?)[muv][xy]?"
+)
 #: A knot in metres a second.
 _KNOT = 1852 / 3600
 #: Letters of axes that stand anywhere in names, if their unit is one of motion or of stress.
@@ -605,7 +608,7 @@ _FACTOR = re.compile(r"([A-Za-z%]+)(?:\*\*|\^)?(-?[1-3])?")
 
 
 def is_temperature(mesh: pv.DataSet, name: str) -> bool:
-    """Return whether an array is one of temperatures, by its name or what its file says of it.
+    """Return whether an array is one of temperatures, by its name or the words of its file.
 
     Parameters
     ----------

@@ -6,12 +6,11 @@ import re
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pyvista as pv
 
 from vizlight import _check
 
 if TYPE_CHECKING:
-    import pyvista as pv
-
     from vizlight._types import Array
 
 __all__ = ["with_von_mises"]
@@ -68,8 +67,8 @@ def with_von_mises(mesh: pv.DataSet, name: str, /) -> pv.DataSet:
 
     Raises
     ------
-    ValueError
-        If there is no such array.
+    TypeError, ValueError
+        If it is no dataset, or has no such array.
 
     Examples
     --------
@@ -80,6 +79,8 @@ def with_von_mises(mesh: pv.DataSet, name: str, /) -> pv.DataSet:
     >>> float(files.with_von_mises(bar, "stress")["von Mises stress"][0])
     7.0
     """
+    _check.instance("mesh", mesh, pv.DataSet, "a pyvista.DataSet")
+    name = _check.text("name", name, expected="the name of an array of tensors")
     of_points = name in mesh.point_data
     data = mesh.point_data if of_points else mesh.cell_data
     names = [key for key in mesh.array_names if mesh[key].shape[1:] in {(4,), (6,), (9,)}]

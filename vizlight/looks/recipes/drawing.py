@@ -302,7 +302,7 @@ class Case:
         return layers if self.box is None else [*layers, *self.boxed(self.box, camera)]
 
     def strokes(self, lines: Sequence[Step | None], **drawn: object) -> list[Layer]:
-        """Return the layers of dark lines, of those that are there."""
+        """Return the layers of dark lines; None stands for no lines."""
         ink: Keywords = {"color": DARK, "line_width": self.width, "lighting": False, **BESIDE}
         return [Layer(step, ink | drawn, live=False) for step in lines if step is not None]
 
