@@ -316,6 +316,8 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
     errors = _faults(errors)
     if not meshes or not all(isinstance(mesh, pv.DataSet) and mesh.n_points for mesh in meshes):
         reason = f"no points: {errors[0]}" if errors else reason
+        if reason.startswith("its overlay"):
+            raise _wrong("overlay", f"values for the points of '{path}'", f"none: {reason}")
         if "CFF Fluent" in reason:  # as VTK says of any other .h5 file
             reason = "HDF5 of an unknown program; look at a mesh of arrays that h5py reads"
         got, remedy = f"'{path}' ({reason})", foreign_files.way_out(path)

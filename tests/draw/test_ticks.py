@@ -1,5 +1,6 @@
 """Round numbers along bars and axes."""
 
+import numpy as np
 import pytest
 
 from vizlight.draw import ticks
@@ -18,3 +19,8 @@ from vizlight.draw import ticks
 )
 def test_the_numbers_of_a_bar_are_few_and_round(low, high, words):
     assert [word for _, word in ticks.even_numbers(low, high)] == words
+
+
+def test_ends_of_a_bar_that_rounding_alone_tells_apart():
+    low = np.sqrt(2)
+    assert ticks.even_ends(low, np.nextafter(low, 2)) == pytest.approx((low, low))

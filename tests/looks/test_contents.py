@@ -247,6 +247,15 @@ def test_much_the_same_greys_of_a_surface_in_space_are_no_datum(spread, shown):
     assert Contents(ball).arrays[0].name == "RGB"
 
 
+def test_errors_of_other_arrays_come_last():
+    ball = pv.Sphere()
+    for name in ("NormalizedSignalEstimationError", "EstimatedUncertainty", "RTOP1"):
+        ball[name] = rising(ball.n_points)
+    assert Contents(ball).first("values").name == "RTOP1"
+    del ball.point_data["RTOP1"]
+    assert Contents(ball).first("values").name == "NormalizedSignalEstimationError"
+
+
 def test_arrays_that_tell_the_place_are_no_vectors_and_come_last():
     grid = pv.ImageData(dimensions=(9, 8, 7), spacing=(5, 5, 2)).cast_to_unstructured_grid()
     x, y, z = np.round(grid.cell_centers().points.T, 3)

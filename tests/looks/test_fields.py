@@ -67,6 +67,30 @@ def test_a_slow_field_is_arrows_along_it_over_its_speed():
     assert np.all(np.diff(age) * along > 0)
 
 
+def test_the_title_of_a_cut_tells_its_place_its_axes_and_what_its_arrows_are():
+    grid = pv.ImageData(dimensions=(9, 31, 31), spacing=(0.5, 0.1, 0.1))
+    x, y, z = grid.points.T
+    grid["wind"] = np.stack([5 + y, 0.2 * z - 0.3, 0.3 - 0.1 * y], axis=1)
+    look = vizlight.look(grid, slice="x:2")
+    assert look.drawing.words.startswith("length of wind in colours, with strokes")
+    title = look.drawing.keys[0]["title"]
+    assert title.startswith("speed of wind; arrows: part in the cut; x = 2, ")
+    # The words for the axes are those of the camera.
+    eye = look.view
+    for letter, axis in (("y", (0, 1, 0)), ("z", (0, 0, 1))):
+        right, up = (float(np.dot(axis, way)) for way in (np.cross(eye.direction, eye.up), eye.up))
+        word = {1: "to the right", -1: "to the left"}.get(round(right)) or {1: "up"}.get(
+            round(up), "down"
+        )
+        assert f"{letter} {word}" in title
+    grid["heat"] = x + y + z
+    for axes, words in ((["x", "y", "z"], "z = 1, "), ([*meaning.ANATOMY], "R to the right, A up")):
+        meaning.attach(grid, meaning.Meaning(axes=axes))
+        assert words in vizlight.look(grid, slice="z:1", array="heat").drawing.keys[0]["title"]
+    oblique = vizlight.look(grid, slice="1,1,0:1", array="heat").drawing.keys[0]["title"]
+    assert oblique.lower() == "heat"
+
+
 @pytest.mark.slow
 def test_strokes_are_nearer_where_the_field_turns_faster():
     spacings = []

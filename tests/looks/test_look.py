@@ -12,6 +12,7 @@ from PIL import Image
 import vizlight
 from vizlight import files
 from vizlight.files import FileError
+from vizlight.looks import levels
 from vizlight.looks.recipes.drawing import titled
 from vizlight.looks.rules import RULES
 from vizlight.mesh import meaning, series
@@ -296,13 +297,20 @@ def test_options_win_over_the_rule():
     assert vizlight.look(mesh, "flow", spacing=2.0, size=SIZE).shown == "streamlines"
     on = vizlight.look(mesh, contour="T", level=0.5, size=SIZE)
     assert (on.question, on.array) == ("direction", "V")
+    # Without a level the isosurface is where the values are steepest, which a note tells.
+    steepest, _ = levels.best_level(mesh, "T")
+    found = vizlight.look(mesh, contour="T", size=SIZE)
+    np.testing.assert_allclose(found.mesh["T"], steepest, rtol=1e-5)
+    assert f"the level of T is {levels.number(steepest)}, where it is steepest" in found.notes
     look = vizlight.look(mesh, view="x", size=SIZE, scene="shape")
     toward = np.subtract(look.view.position, look.view.focal_point)
     np.testing.assert_allclose(toward / np.linalg.norm(toward), (1, 0, 0), atol=1e-9)
     assert look.scene.lights == vizlight.presets.shape().lights
     asked = {"slice": "z:3", "array": "T", "size": SIZE}
     bar, none = (vizlight.look(mesh, **asked, key=key).key for key in (True, False))
-    assert [(key["question"], key["title"]) for key in bar] == [("value", "T")]
+    assert [(key["question"], key["title"]) for key in bar] == [
+        ("value", "T; z = 3, x to the right, y up")
+    ]
     assert none == ()
 
 

@@ -35,6 +35,43 @@ def test_each_mesh_is_drawn_by_its_rule_and_all_share_the_camera_and_the_range()
     assert text.count("vizlight.presets.heading") == 1
 
 
+def test_files_whose_arrays_a_reader_named_alike_have_their_own_ranges(tmp_path):
+    nibabel = pytest.importorskip("nibabel")
+    x, y, z = np.meshgrid(*[np.arange(-17.0, 17.0)] * 3, indexing="ij")
+    of_ball = {side: np.tanh(4 - np.sqrt((x - side) ** 2 + y**2 + z**2)) + 1 for side in (-7, 7)}
+    head = 400 * np.tanh(16 - np.sqrt(x**2 + y**2 + z**2)) + 400
+    values = {"head": head, "t": of_ball[7] - of_ball[-7]}
+    for name, rows in values.items():
+        image = nibabel.Nifti1Image(rows.astype(np.float32), np.diag([3, 3, 3, 1]))
+        nibabel.save(image, tmp_path / f"{name}.nii")
+    look = vizlight.look([tmp_path / "head.nii", tmp_path / "t.nii"], size=SIZE)
+    *_, blobs = (layer for layer in look.drawing.layers if "scalars" in layer.keywords)
+    mesh, level = blobs.mesh.run(), blobs.keywords["clim"][1]
+    assert blobs.keywords["clim"] == (-level, level)
+    assert pv.Color(blobs.keywords["cmap"][1]) == pv.Color(look.key[-1]["cmap"].map_value(1))
+    np.testing.assert_array_equal(np.sign(mesh["NIFTI"]), np.sign(mesh.points[:, 0] - 51))
+    # Values of one title share a range.
+    grids = [pv.ImageData(dimensions=(3, 3, 1), origin=(5 * i, 0, 0)) for i in (0, 1)]
+    for i, grid in enumerate(grids):
+        grid["values"] = np.arange(9.0) * (i + 1) + 0.5
+    (key,) = vizlight.look(grids, size=SIZE).drawing.keys
+    assert key["clim"] == (0.5, 16.5)
+
+
+def test_a_closed_surface_around_others_is_see_through():
+    inside, outside = ball(0).scale(0.5), lines()
+    for other, is_around in ((inside, True), (outside, False), (ball(0.8), False)):
+        look = vizlight.look([other, ball(0)], size=SIZE)
+        seen = [
+            it.keywords.get("opacity", 1) for it in look.drawing.layers if "scalars" in it.keywords
+        ]
+        assert seen[-1] < 1 if is_around else min(seen) == 1
+        assert ("a surface is see-through: data lie inside it" in look.notes) == is_around
+    # An open one shows what it holds.
+    look = vizlight.look([inside, ball(0).clip("z", origin=(0, 0, 0.4))], size=SIZE)
+    assert not any("opacity" in layer.keywords for layer in look.drawing.layers)
+
+
 def test_blocks_of_other_dimensions_are_drawn_and_walls_of_a_volume_are_not():
     mixed = pv.MultiBlock({"ball": ball(0), "lines": lines()})
     assert [part[0].max_cell_dimensionality for part in blocks.by_dimension(mixed)] == [2, 1]

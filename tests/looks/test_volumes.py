@@ -6,6 +6,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight.draw.margins import parted
+from vizlight.filters.key import annotated
 from vizlight.looks.recipes import volumes
 from vizlight.mesh import density_maps, meaning
 
@@ -194,7 +195,8 @@ def test_both_signs_of_an_orbital_are_shown(monkeypatch):
     grid["psi"] = x * np.exp(-np.sqrt(x * x + y * y + z * z) / 2)
     look = vizlight.look(grid)
     (key,) = look.drawing.keys
-    level = key["levels"][2]
+    level = key["clim"][1]
+    assert [name for _, name in annotated(key["cmap"].run())] == [f"{-level:.4g}", f"{level:.4g}"]
     assert f"isosurface psi = ±{level:.4g}" in look.summary
     assert key["title"] == f"Psi = ±{level:.4g}"
     np.testing.assert_allclose(np.unique(look.mesh["psi"]), [-level, level], rtol=1e-6)
@@ -202,7 +204,7 @@ def test_both_signs_of_an_orbital_are_shown(monkeypatch):
     grid.field_data["atom_numbers"], grid.field_data["atom_places"] = [8, 1], [[0, 0, 0], [1, 0, 0]]
     with_atoms = vizlight.look(grid)
     lobes, atoms, *_ = with_atoms.drawing.layers
-    end, squares = with_atoms.drawing.keys[0]["levels"][2], np.asarray(grid["psi"]) ** 2
+    end, squares = with_atoms.drawing.keys[0]["clim"][1], np.asarray(grid["psi"]) ** 2
     assert squares[squares > end**2].sum() == pytest.approx(0.85 * squares.sum(), rel=0.05)
     assert (lobes.keywords["opacity"], lobes.keywords["culling"]) == (0.5, "back")
     normals, points = lobes.mesh.run()["Normals"], np.asarray(lobes.mesh.run().points)

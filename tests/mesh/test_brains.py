@@ -321,23 +321,6 @@ def test_values_of_brain_models_without_places_say_what_to_become(of_models):
         vizlight.read(path)
 
 
-def test_segments_of_a_file_of_labels_have_their_names_and_colours(tmp_path):
-    labels = np.zeros((4, 5, 12), np.uint8)
-    labels[1:3, 1:4, 1:3], labels[1:3, 1:4, 3:5] = 2, 7
-    fields = [
-        "NRRD0004", "type: unsigned char", "dimension: 3", "sizes: 12 5 4", "encoding: raw",
-        "Segment0_Name:=left lung", "Segment0_LabelValue:=2", "Segment0_Color:=1 0.5 0",
-        "Segment1_Color:=0 0 1", "Segment1_LabelValue:=7", "Segment1_Name:=heart",
-    ]  # fmt: skip
-    path = tmp_path / "a.seg.nrrd"
-    path.write_bytes("\n".join([*fields, "\n"]).encode() + labels.tobytes())
-    mesh = vizlight.read(path)
-    assert meaning.flags(mesh, "segment") == {2: "left lung", 7: "heart"}
-    assert meaning.flags(mesh, "segment", "colors") == {2: "#ff8000", 7: "#0000ff"}
-    look = vizlight.look(path)
-    assert look.drawing.keys[0]["cmap"].arguments[0] == {2: "left lung", 7: "heart"}
-
-
 def test_a_slice_of_a_scan_is_gray_and_no_map(tmp_path):
     rows = np.add.outer(np.arange(30.0), np.arange(20.0))[..., np.newaxis]
     nibabel.save(nibabel.Nifti1Image(rows.astype(np.float32), np.eye(4)), tmp_path / "a.nii")

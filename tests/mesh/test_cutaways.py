@@ -125,6 +125,16 @@ def test_what_the_volume_cuts_off_is_closed():
     assert outside.area == pytest.approx(area, rel=0.02)
 
 
+def test_whole_numbers_are_on_all_parts_with_values_between_them():
+    grid = pv.ImageData(dimensions=(21, 21, 21))
+    grid["v"] = np.minimum(30 - 2 * np.linalg.norm(grid.points - 10, axis=1), 25).astype(np.int16)
+    parts = files.without_corner(grid, "v", 8.5)
+    # Of corners of the box above the level, and of the isosurface.
+    assert parts["outside"]["v"].min() == pytest.approx(8.5)
+    assert parts["cut"]["v"].min() == pytest.approx(8.5)
+    assert grid["v"].dtype == np.int16
+
+
 def test_values_of_cells_stay_those_of_their_cells():
     grid = pv.ImageData(dimensions=(5, 5, 5))
     grid.cell_data["v"] = np.arange(64.0)

@@ -48,6 +48,10 @@ def test_few_slices_far_apart_are_drawn_as_a_sheet():
     assert look.shown == "slices"
     assert "side by side" in look.summary
     np.testing.assert_allclose(np.abs(look.view.direction), (0, 0, 1), atol=1e-6)
+    assert montages.is_stack(stack(30, 120, 120))
+    # Beside other meshes it is a body in space.
+    both = vizlight.look([volume, pv.Sphere(center=volume.center)], size=(240, 160))
+    assert "side by side" not in both.summary
     assert not montages.is_stack(stack(4, 24, 24, apart=1.0))
     assert not montages.is_stack(stack(12, 24, 24))
     assert not montages.is_stack(pv.Sphere())

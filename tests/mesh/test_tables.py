@@ -51,5 +51,26 @@ def test_a_table_over_a_mesh_has_a_row_for_each_point(tmp_path):
     table = written(tmp_path / "b.tsv", "p\tq\n1\t5\n2\t6\n3\t7\n4\t8\n")
     assert vizlight.read(tmp_path / "a.vtp", overlay=table)["q"].tolist() == [5, 6, 7, 8]
     short = written(tmp_path / "c.csv", "p\n1\n")
-    with pytest.raises(FileError, match="'.*c.csv' has 1 rows for a mesh of 4 points"):
+    words = (
+        "overlay: expected values for the points of .*'.*c.csv' has 1 rows for a mesh of 4 points"
+    )
+    with pytest.raises(FileError, match=words):
         vizlight.read(tmp_path / "a.vtp", overlay=short)
+    uneven = written(tmp_path / "d.csv", "p\n1,2\n")
+    with pytest.raises(FileError, match=r"overlay: .*'.*d.csv' is no table: a row has 2 columns"):
+        vizlight.read(tmp_path / "a.vtp", overlay=uneven)
+
+
+def test_a_table_over_a_mesh_needs_no_names(tmp_path):
+    pv.Plane(i_resolution=1, j_resolution=1).triangulate().save(tmp_path / "a.vtp")
+    for text, columns in (
+        ("1\n2\n3\n4\n", {"p": [1, 2, 3, 4]}),
+        ("1,-5\n2,nan\n3,7\n4,8\n", {"p 1": [1, 2, 3, 4], "p 2": [-5, np.nan, 7, 8]}),
+        # Numbers above a row for each point are names, as pandas writes them.
+        ("0\n1\n2\n3\n4\n", {"0": [1, 2, 3, 4]}),
+    ):
+        mesh = vizlight.read(tmp_path / "a.vtp", overlay=written(tmp_path / "p.csv", text))
+        for name, rows in columns.items():
+            np.testing.assert_array_equal(mesh[name], rows)
+    with pytest.raises(FileError, match="has 3 rows for a mesh of 4 points"):
+        vizlight.read(tmp_path / "a.vtp", overlay=written(tmp_path / "p.csv", "1\n2\n3\n"))

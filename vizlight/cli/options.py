@@ -75,7 +75,7 @@ class FilePart:
     contour
         Point array of the isosurface that is taken.
     level
-        Value of the isosurface. Default: the middle of the range.
+        Value of the isosurface. Default: where the values are steepest.
     """
 
     time: Text | None = None

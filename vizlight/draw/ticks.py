@@ -76,6 +76,8 @@ def even_ends(low: float, high: float) -> tuple[float, float]:
         if len(levels) < 2:
             continue
         step = levels[1] - levels[0]
+        if not step:  # rounding alone tells the ends apart
+            continue
         first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
         if last - first < MOST and (last - first) * step <= WASTE * (high - low):
             return float(f"{first * step:.12g}"), float(f"{last * step:.12g}")

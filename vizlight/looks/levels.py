@@ -18,6 +18,8 @@ OUTER, STRONG = 0.1, 3.0
 #: Share of the values that are the lowest one, and its distance to the first others in that of
 #: these to the median, from which it is no value; share of this distance at which others begin.
 APART, FAR, UNBLENDED = 0.01, 2.0, 0.9
+#: Share of the steepness of the best level at which scans are drawn: thin parts are dark.
+THIN = 0.9
 #: Fewest cells of the sample that a level must cross.
 FEWEST = 30
 

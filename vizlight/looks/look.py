@@ -504,7 +504,8 @@ def decide(data: object, wishes: Wishes) -> Look:
         _decided(rule, replace(case, wishes=mine), notes)
         for (rule, case), mine, (_, _, notes) in zip(chosen, shared, ready, strict=True)
     ]
-    drawing = together.joined([look.drawing for look in looks])
+    cases = [case for _, case in chosen]
+    drawing = together.joined(together.seen_through(cases, [look.drawing for look in looks]))
     if len(several) == 1:
         drawing = replace(drawing, alone=looks[0].drawing.lit)
     reasons = "; ".join(dict.fromkeys(look.reason for look in looks))
@@ -545,6 +546,10 @@ def _look_of(rule: Rule, case: Case, drawing: Drawing, notes: Sequence[str]) -> 
     """Return the look of one mesh, as a recipe draws it, with the frame and coasts of a map."""
     drawing = maps.furnished(case, drawing)
     drawing = replace(drawing, notes=[*notes, *drawing.notes])
+    place = case.place_of_cut(drawing.camera)
+    if place and drawing.keys and drawing.keys[0].get("title"):
+        first, *more = drawing.keys
+        drawing = replace(drawing, keys=[first | {"title": f"{first['title']}; {place}"}, *more])
     array = None if case.array is None else case.array.name
     seen = "" if case.wishes.frame else drawing.camera.note
     reason = rule.why + (f"; seen {seen}" if seen else "")
@@ -686,6 +691,7 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         notes.append(_of_stretched(step.run(), factor))
     if part.get("contour") is not None and wishes.question != "flow":
         step = wishes.isosurface(step)
+        notes += [step.note] if step.note else []
     if contents.mesh is not step.run():
         contents = replace(contents, mesh=step.run())
     notes += [words] if (words := contents.words_on_none()) else []

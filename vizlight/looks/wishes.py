@@ -14,6 +14,7 @@ from vizlight.draw.cameras import VIEW_ANGLE
 from vizlight.draw.keywords import LIGHT
 from vizlight.draw.margins import LETTERS, data_share
 from vizlight.draw.render import KEY_SIZE
+from vizlight.looks import levels
 from vizlight.looks.steps import Step
 from vizlight.mesh import georeference, height_grids, meaning, projections, records
 from vizlight.scene.material import Material
@@ -335,10 +336,26 @@ class Wishes:
         return Step("joined", "files.with_vectors", mesh, array.name)
 
     def isosurface(self, mesh: Step) -> Step:
-        """Return the step that takes the isosurface that is asked for."""
+        """Return the step that takes the isosurface that is asked for.
+
+        Without a level it is the one through the steepest places, if one crosses them.
+        """
         names = ("contour", "level")
         keywords = {name: self.part[name] for name in names if self.part.get(name) is not None}
-        return Step("surface", "files.surface_of", mesh, **keywords)
+        volume, name, note = mesh.run(), keywords["contour"], ""
+        if "level" not in keywords and isinstance(name, str) and name in volume.array_names:
+            is_scalar = np.ndim(volume[name]) == 1 and volume[name].dtype.kind in "iuf"
+            is_scan = meaning.ways(volume) == (*meaning.ANATOMY.values(),)
+            share = levels.THIN if is_scan else 1.0
+            level, contrast = (0.0, 0.0)
+            if is_scalar:
+                level, contrast = levels.best_level(volume, name, share=share)
+            if contrast > 0:
+                keywords["level"] = level
+                note = f"the level of {name} is {levels.number(level)}, where it is steepest"
+        step = Step("surface", "files.surface_of", mesh, **keywords)
+        step.note = note
+        return step
 
     def globe(self, mesh: Step) -> Step:
         """Return the step that puts a map of the whole earth on a ball.

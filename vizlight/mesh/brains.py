@@ -61,9 +61,6 @@ MAPS = (".dscalar.nii", ".dlabel.nii")
 #: Note on values at the points of a surface, such as its curvature.
 NO_SURFACE = "values over a surface, without one: read the surface, and pass this file as overlay="
 
-#: Fields of a segment in the header of an NRRD file.
-_SEGMENT = re.compile(r"(?m)^Segment(\d+)_(Name|LabelValue|Color):=(.*)$")
-
 
 def is_freesurfer(path: Path) -> bool:
     """Return whether a file begins like FreeSurfer's surfaces and arrays.
@@ -233,24 +230,55 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
         raise ValueError(f"{rows.dtype} numbers of shape {rows.shape} are no volume")
     if np.count_nonzero(np.array(rows.shape[:3]) > 1) == 1:
         raise ValueError(NO_SURFACE)
-    # Axes of the storage that run to the left, to the back or down are turned over, and put in
-    # order, with their values: the places stay.
-    turn = nibabel.io_orientation(affine)
-    rows = nibabel.apply_orientation(rows, turn)
-    counts = rows.shape[:3]
-    affine = affine @ nibabel.orientations.inv_ornt_aff(turn, shape[:3] + (1,) * (3 - len(shape)))
-    grid = of_affine(affine, counts)
-    kind = np.float32 if rows.dtype == np.float16 else rows.dtype.newbyteorder("=")
-    flat = np.ascontiguousarray(rows, dtype=kind).reshape(-1, *rows.shape[3:], order="F")
-    name = FORMATS.get(path.suffix.lower(), "NIFTI")
-    grid.point_data[name] = flat
-    grid.field_data[UNIT] = ["millimetre"]
-    said = meaning.Meaning(axes=[*meaning.ANATOMY])
-    said.axes[-1] += (
-        f", in mm by the affine of the header (stored {''.join(nibabel.aff2axcodes(image.affine))})"
-    )
-    meaning.attach(grid, said)
+    grid = turned(rows, affine, FORMATS.get(path.suffix.lower(), "NIFTI"))
+    mark_as_body(grid, "affine", affine)
     return grid if steps < 2 else series.marked(grid, times, index)
+
+
+def turned(rows: AnyArray, affine: AnyArray, name: str) -> pv.ImageData | pv.StructuredGrid:
+    """Return a grid of values, with axes that run backward turned over, and put in order.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (I, J, K) or (I, J, K, C)
+        Values in the order of a file.
+    affine : ndarray, shape (4, 4)
+        Matrix that takes i, j, k to places, which stay.
+    name : str
+        Name of the array of the grid.
+    """
+    import nibabel
+
+    turn = nibabel.io_orientation(affine)
+    affine = affine @ nibabel.orientations.inv_ornt_aff(turn, rows.shape[:3])
+    rows = nibabel.apply_orientation(rows, turn)
+    grid = of_affine(affine, rows.shape[:3])
+    kind = np.float32 if rows.dtype == np.float16 else rows.dtype.newbyteorder("=")
+    grid.point_data[name] = np.ascontiguousarray(rows, dtype=kind).reshape(
+        -1, *rows.shape[3:], order="F"
+    )
+    return grid
+
+
+def mark_as_body(grid: pv.DataSet, word: str, affine: AnyArray) -> None:
+    """Say of a grid that its axes are those of a body, in mm.
+
+    Parameters
+    ----------
+    grid : pyvista.DataSet
+    word : str
+        Name of the part of the header that says so.
+    affine : ndarray, shape (4, 4)
+        Matrix by which the file stores it.
+    """
+    import nibabel
+
+    grid.field_data[UNIT] = ["millimetre"]
+    said = meaning.of(grid)
+    said.axes = [*meaning.ANATOMY]
+    stored = "".join(nibabel.aff2axcodes(affine))
+    said.axes[-1] += f", in mm by the {word} of the header (stored {stored})"
+    meaning.attach(grid, said)
 
 
 def _are_directions(part: Foreign, shape: Sequence[int]) -> bool:
@@ -483,37 +511,3 @@ def tracks_of_tt(path: Path) -> tuple[AnyArray, AnyArray, AnyArray]:
         # In mm along the axes of the image, from its first voxel.
         points = places * np.ravel(parts["voxel_size"])
     return points, np.cumsum(counts) - counts, counts
-
-
-def image_of_nrrd(path: Path) -> pv.DataSet:
-    """Return an image; labels have the names and colours of segments, as 3D Slicer writes them.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file. The array of labels is named "segment" if it has segments.
-    """
-    image: pv.DataSet = series.unchecked(pv.get_reader(path))  # type: ignore[no-untyped-call]
-    _name_segments(image, path)
-    return image
-
-
-def _name_segments(image: pv.DataSet, path: Path) -> None:
-    with path.open("rb") as file:
-        head = file.read(1 << 16).partition(b"\n\n")[0].decode("utf-8", "replace")
-    parts: dict[str, dict[str, str]] = {}
-    for number, key, value in _SEGMENT.findall(head):
-        parts.setdefault(number, {})[key] = value.strip()
-    kinds = []
-    for part in parts.values():
-        try:
-            color = [float(word) for word in part["Color"].split()]
-            kinds.append((int(part["LabelValue"]), part.get("Name", ""), color))
-        except (KeyError, ValueError):
-            return  # segments without labels or colours are layers of components
-    names = image.point_data.keys()
-    if kinds and len(names) == 1 and image.point_data[names[0]].dtype.kind in "iu":
-        image.rename_array(names[0], "segment", preference="point")
-        said = meaning.Meaning()
-        said.add_kinds("segment", kinds)
-        meaning.attach(image, said)

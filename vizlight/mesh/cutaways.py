@@ -155,7 +155,11 @@ def without_corner(
         raise _check.value_error("volume", "a mesh with solid cells", type(volume).__name__)
     name = _check.text("name", name, expected="the name of an array")
     if level is not None or name not in volume.cell_data:
-        records.scalars_of(volume, "name", name)
+        rows = records.scalars_of(volume, "name", name)
+        if level is not None and rows.dtype.kind in "biu":
+            # Parts of different types lose their values where they become one mesh.
+            volume = volume.copy(deep=False)
+            volume.point_data[name] = rows.astype(np.float64)
     direction = np.array(_check.vector("toward", toward, direction=True, n=3))
     signs = np.where(np.abs(direction) < ALONG * np.abs(direction).max(), 0, np.sign(direction))
     hull = blocks.outer_surface(volume)[0]
@@ -165,6 +169,7 @@ def without_corner(
         is_low = bool(np.mean(np.asarray(hull[name]) > level) > MIDDLE)
         hull = hull.clip_scalar(scalars=name, value=level, invert=is_low)
         isosurface = volume.contour([level], scalars=name, compute_normals=False)
+        isosurface.point_data[name] = np.full(isosurface.n_points, level, hull[name].dtype)
     body = _merged([hull, isosurface])
     middle = np.reshape(body.bounds, (3, 2)).mean(axis=1)
     # Clipped through their points, cells of an isosurface would have sides without length.

@@ -14,7 +14,7 @@ from vizlight.vtk.cells import dimensions
 
 #: Most slices of a stack, fewest pixels along its slices as a multiple of their number, and least
 #: distance of slices in that of their pixels.
-MOST, PIXELS, APART = 24, 4, 1.5
+MOST, PIXELS, APART = 30, 4, 1.5
 #: Width over height of the sheet, and gap between slices as a share of their width.
 SHAPE, GAP = 1.5, 0.02
 

@@ -66,12 +66,21 @@ def read(path: Path) -> pv.PolyData:
 def add(mesh: pv.DataSet, path: Path) -> None:
     """Add the columns of a table to the points of a mesh, row by row.
 
+    A first line of numbers is a row, in a table that would else lack one; columns are then named
+    after the file.
+
     Raises
     ------
     ValueError
-        If it has another number of rows, with both numbers.
+        If it has another number of rows, with both numbers, or is no table.
     """
-    columns, _ = _columns(path)
+    try:
+        columns, _ = _columns(path)
+        sizes = {len(rows) for rows in columns.values()}
+        if mesh.n_points not in sizes and _numbers([*columns], comma=False) is not None:
+            columns, _ = _columns(path, named=False)
+    except ValueError as error:
+        raise ValueError(f"its overlay '{path}' is no table: {error}") from error
     for name, rows in columns.items():
         if len(rows) != mesh.n_points:
             got = f"{len(rows)} rows for a mesh of {mesh.n_points} points"
@@ -79,13 +88,20 @@ def add(mesh: pv.DataSet, path: Path) -> None:
         mesh.point_data[name] = rows
 
 
-def _columns(path: Path) -> tuple[dict[str, Array], list[str]]:
-    """Return the columns of numbers by their names, and the names of those of text."""
+def _columns(path: Path, *, named: bool = True) -> tuple[dict[str, Array], list[str]]:
+    """Return the columns of numbers by their names, and the names of those of text.
+
+    ``named`` says whether the first line has names.
+    """
     with path.open(encoding="utf-8-sig", newline="", errors="replace") as file:
         first = file.readline()
         separator = max(SEPARATORS, key=first.count)
         names = next(csv.reader([first.lstrip("# ")], delimiter=separator), [])
         rows = [row for row in csv.reader(file, delimiter=separator) if any(map(str.strip, row))]
+    if not named:
+        rows = [names, *rows]
+        single = len(names) == 1
+        names = [path.stem if single else f"{path.stem} {i + 1}" for i in range(len(names))]
     if rows and all(len(row) == len(names) + 1 and not row[-1].strip() for row in rows):
         # Some programs end each row, but not the first line, by a separator.
         rows = [row[:-1] for row in rows]

@@ -80,6 +80,9 @@ BANDS = "vizlight.maps.bands"
 #: and share of the points of borders that are on sides where a box cuts a surface.
 ON_BOX, CUT = 1e-3, 0.95
 
+#: Least cosine between an axis and a side of the picture along which it runs.
+ALONG = 0.99
+
 #: Methods of CF over the time of a step.
 OVER_TIME = re.compile(r"\btime: (mean|maximum|minimum|median|sum|variance)\b(?! within)")
 #: Names of velocities, in lower case.
@@ -357,6 +360,30 @@ class Case:
         """Step that makes the frame of a map, None for other data and for a map seen at a slant."""
         is_map = self._is_above and not self.is_of_body
         return map_parts.frame(self.data, self.wishes, self._up) if is_map else None
+
+    def place_of_cut(self, camera: Step) -> str:
+        """Return words for the plane that cuts the mesh, and for the axes that lie in it.
+
+        They are empty where none does, for a plane that is across no axis, and on a map, whose
+        frame tells them. Letters of axes of a body are those of their ends: right, front, up.
+        """
+        plane, mesh = self.wishes.part.get("slice"), self.data.run()
+        if plane is None or meaning.of(mesh).scales or georeference.has_degrees(mesh):
+            return ""
+        normal, origin = (np.asarray(row, dtype=np.float64) for row in plane)
+        across, *others = np.flatnonzero(normal)
+        if others:
+            return ""
+        unit, eye = meaning.written(georeference.unit_of(mesh)), camera.run()
+        place = f"{'xyz'[across]} = {levels.number(origin[across])} {unit}".rstrip()
+        right = np.cross(eye.direction, eye.up)
+        letters = "RAS" if self.is_of_body else "xyz"
+        words = [
+            f"{letters[axis]} {more if way[axis] > 0 else less}"
+            for way, more, less in ((right, "to the right", "to the left"), (eye.up, "up", "down"))
+            for axis in np.flatnonzero(np.abs(way) > ALONG)
+        ]
+        return ", ".join([place, *words])
 
     @property
     def is_of_body(self) -> bool:

@@ -76,6 +76,8 @@ WALLS = {"paper": "white", "dark": "#3a3d42"}
 WALL_LIGHT: Keywords = {"ambient": 0.72, "diffuse": 0.2, "smooth_shading": True}
 #: Words of the key for the sense of strokes.
 SENSE = "; arrows point downstream"
+#: The same on a cut, where colours tell the whole length of vectors and strokes their course in it.
+SENSE_IN_CUT = "; arrows: part in the cut"
 #: Stroke lengths that strokes move in a movie where vectors are long.
 TRAVEL = 3.0
 #: Share by which the shortest vectors are shorter than most, below which lengths are no speed.
@@ -181,7 +183,8 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     layers = [Layer(mesh, shown | case.wishes.drawn(light)), *case.edges(camera)]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
-    bar = _bar(mesh, array.name, colors, "" if strokes is None else SENSE)
+    sense = SENSE if case.wishes.part.get("slice") is None else SENSE_IN_CUT
+    bar = _bar(mesh, array.name, colors, "" if strokes is None else sense)
     words = f"length of {array.name} in colours" + ", with strokes along it" * (strokes is not None)
     lit = case.lit(mesh, scene, **light)
     notes = [note] if note else []

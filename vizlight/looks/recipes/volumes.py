@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pyvista as pv
+from matplotlib.colors import to_hex
 
 from vizlight.draw.margins import parted
+from vizlight.filters.tint import color_table
 from vizlight.looks import levels
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around
@@ -25,7 +27,7 @@ from vizlight.mesh import density_maps, meaning, molecules, montages
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Bools
+    from vizlight._types import Array, Bools, Foreign
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
@@ -33,8 +35,6 @@ if TYPE_CHECKING:
 LEAST_OF_BOX = 0.4
 #: Fewest voxels along each side of a scan, and the most of its sides that it closes.
 VOXELS, MOST_CLOSED = 30, 0.4
-#: Share of the steepness of the best level at which scans are drawn: thin parts are dark.
-THIN = 0.9
 #: Numbers of air and bone in computed tomography, in Hounsfield units, and how near to that of air
 #: others are its own; least share of air, and shares of bone, of such a scan.
 AIR, BONE, NEAR_AIR, MUCH_AIR, BONES = -1000.0, 300.0, 50.0, 0.05, (0.002, 0.3)
@@ -100,7 +100,8 @@ def isosurface(case: Case) -> Drawing:
     """
     array = case.needed_array
     if case.wishes.question == "auto" and _is_stack(case, array):
-        return stack(case)
+        # A sheet of slices has no place among other meshes.
+        return stack(case) if case.wishes.frame is None else slices(case)
     level = _level(case, array)
     if isinstance(level, str):
         return _cut_open(case) or slices(case, level)
@@ -185,7 +186,7 @@ def _level(case: Case, array: Named) -> _Level | str:
     elif is_scan and is_auto and _is_gray(case, array) and _is_compact(case, array):
         return ""
     else:
-        share = THIN if is_scan else 1.0
+        share = levels.THIN if is_scan else 1.0
         level, contrast = levels.best_level(volume.run(), array.name, share=share)
     if contrast < levels.GOOD:
         return f"; no isosurface stands out (the steepest is {contrast:.1f} times the mean)"
@@ -217,12 +218,20 @@ def _size_of_both_signs(values: Array, volume: Step, array: Named) -> float | No
 
 def _of_both_signs(surface: Case, array: Named, ends: tuple[float, float], words: str) -> Drawing:
     """Return the drawing of the isosurfaces at a level of both signs, each in its colour."""
-    picture = {"cmap": LOBES, "clim": ends} | dict(surface.wishes.picture)
+    cmap: Foreign = surface.wishes.colors.get("cmap", LOBES)
+    # No range but theirs tells the two levels apart.
+    picture = {**surface.wishes.picture, "cmap": cmap, "clim": ends}
     wishes = replace(surface.wishes, picture=picture)
     drawing = surfaces.values(replace(surface, question="value", array=array, wishes=wishes))
     title, unit = parted(str(drawing.keys[0]["title"]))
-    title = f"{title} = {words} {unit}".rstrip()
-    key = drawing.keys[0] | {"title": title, "levels": [ends[0], 0.0, ends[1]]}
+    named = {place: levels.number(end) for place, end in enumerate(ends)}
+    table = color_table([], cmap=cmap, clim=ends)
+    colors = {place: to_hex(table.map_value(end)) for place, end in enumerate(ends)}
+    key = drawing.keys[0] | {
+        "title": f"{title} = {words} {unit}".rstrip(),
+        # Nothing is drawn between the levels, as a bar would say.
+        "cmap": Step("", "vizlight.maps.kinds", named, colors=colors),
+    }
     return replace(drawing, keys=[key])
 
 

@@ -1,0 +1,162 @@
+"""Scans in files of NRRD and MetaImage, at their places in a body."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+
+from vizlight._types import AnyArray, Array
+from vizlight.mesh import brains, meaning, series
+
+#: Axes of a body that point along x, y and z of a file, as in left-posterior-superior, by their
+#: first letters, and signs of those along x to the right, y forward and z up; those of a space of
+#: which VTK's reader turns the rows of raw values over.
+_SIGNS = {"R": 1.0, "L": -1.0, "A": 1.0, "P": -1.0, "S": 1.0, "I": -1.0}
+_TURNED = (-1.0, 1.0, 1.0)
+_SPACE = re.compile(r"(?:(right|left)-(anterior|posterior)-(superior|inferior)|([rl][ap][si]))\b")
+#: Axes of positions of MetaImage in a body, by ITK, whatever letters its header has for storage.
+_LPS = (-1.0, -1.0, 1.0)
+_LETTERS = re.compile(r"[RLAPSI]{3}")
+#: Bytes in which the header of a file is sought, end of that of NRRD, its word for numbers in
+#: letters, and fields of a segment.
+_HEAD = 1 << 16
+_BLANK, _IN_LETTERS = (
+    re.compile(rb"\r?\n\r?\n"),
+    re.compile(r"(?mi)^encoding: *(ascii|text|txt)\s*$"),
+)
+_SEGMENT = re.compile(r"(?m)^Segment(\d+)_(Name|LabelValue|Color):=(.*)$")
+
+
+def read_nrrd(path: Path) -> pv.DataSet:
+    """Return the image of an NRRD file where its space directions say that it is.
+
+    Axes of a body are those of NIfTI: x to the right, y forward and z up. Labels have the names and
+    colours of segments, as 3D Slicer writes them.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file. The array of labels is named "segment" if it has segments.
+    """
+    image: pv.DataSet = series.unchecked(pv.get_reader(path))  # type: ignore[no-untyped-call]
+    with path.open("rb") as file:
+        begin = file.read(_HEAD)
+        end = _BLANK.search(begin)
+        head = begin[: end.start() if end else None].decode("utf-8", "replace")
+        if end and _IN_LETTERS.search(head):
+            # VTK's reader takes the letters for bytes of numbers.
+            file.seek(end.end())
+            (name,) = image.point_data.keys()
+            flat = np.asarray(image.point_data[name])
+            image.point_data[name] = np.array(file.read().split(), flat.dtype).reshape(flat.shape)
+    fields = dict(re.findall(r"(?m)^([a-z ]+):[ \t]+(.*?)\s*$", head))
+    words = re.findall(r"none|\([^)]*\)", fields.get("space directions", ""))
+    axes = [_numbers(word) for word in words if word != "none"]
+    sizes = [
+        int(size)
+        for size, word in zip(fields.get("sizes", "").split(), words, strict=False)
+        if word != "none"
+    ]
+    origin = _numbers(fields.get("space origin", "(0, 0, 0)"))
+    if [len(row) for row in (*axes, origin)] == [3] * 4:
+        signs = [
+            _SIGNS[word[0].upper()]
+            for match in _SPACE.finditer(fields.get("space", "").lower())
+            for word in (match[4] or [*match.groups()[:3]])
+        ]
+        if signs == [*_TURNED] and fields.get("encoding", "").lower() == "raw":
+            # VTK's reader begins with the last row of each layer.
+            (name,) = image.point_data.keys()
+            flat = np.asarray(image.point_data[name])
+            image.point_data[name] = _rows_of(image)[:, ::-1].reshape(flat.shape, order="F")
+        image = _placed(image, sizes, np.array([*axes, origin]).T, signs, "directions")
+    _name_segments(image, head)
+    return image
+
+
+def read_meta(path: Path) -> pv.DataSet:
+    """Return the image of a MetaImage file at its place, by the axes of its header.
+
+    Those of a body, if it has an anatomical orientation, are those of NIfTI; as ITK does, places
+    are taken for left, posterior, superior.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    """
+    image: pv.DataSet = series.unchecked(pv.get_reader(path))  # type: ignore[no-untyped-call]
+    with path.open("rb") as file:
+        head = file.read(_HEAD).partition(b"ElementDataFile")[0].decode("utf-8", "replace")
+    fields = dict(re.findall(r"(?m)^(\w+)[ \t]*=[ \t]*(.*?)\s*$", head))
+    names = ("TransformMatrix", "Rotation", "Orientation")
+    rows = next((fields[name] for name in names if name in fields), "1 0 0 0 1 0 0 0 1")
+    axes = np.array(_numbers(rows))
+    if axes.size == 9 and isinstance(image, pv.ImageData):
+        # A row of the header is the direction of an axis of the image.
+        columns = axes.reshape(3, 3).T * image.spacing
+        is_body = _LETTERS.fullmatch(fields.get("AnatomicalOrientation", "")) is not None
+        sizes = [int(size) for size in fields.get("DimSize", "").split()]
+        affine = np.column_stack([columns, image.origin])
+        image = _placed(image, sizes, affine, _LPS if is_body else (), "matrix")
+    return image
+
+
+def _rows_of(image: pv.DataSet) -> AnyArray:
+    """Return the values of the only array of an image, by the numbers of points along its axes."""
+    (name,) = image.point_data.keys()
+    values: AnyArray = np.asarray(image.point_data[name])
+    return values.reshape(*image.dimensions, *values.shape[1:], order="F")
+
+
+def _numbers(text: str) -> list[float]:
+    """Return the numbers of a text, none where one is not finite."""
+    words = re.split(r"[\s,]+", text.strip("() \t"))
+    try:
+        numbers = [float(word) for word in words]
+    except ValueError:
+        return []
+    return numbers if np.isfinite(numbers).all() else []
+
+
+def _placed(
+    image: pv.DataSet, sizes: list[int], affine: Array, signs: Sequence[float], word: str
+) -> pv.DataSet:
+    """Return an image at its place, by 3 x 4 numbers, and signs of the axes of a body, if any.
+
+    One that its reader took for another form than its header says is left.
+    """
+    is_whole = isinstance(image, pv.ImageData) and [*image.dimensions] == sizes
+    if not is_whole or len(image.point_data) != 1 or np.linalg.matrix_rank(affine[:, :3]) < 3:
+        return image
+    matrix = np.vstack([affine, (0.0, 0.0, 0.0, 1.0)])
+    if signs:
+        matrix[:3] *= np.reshape(signs, (3, 1))
+    (name,) = image.point_data.keys()
+    grid = brains.turned(_rows_of(image), matrix, name)
+    if signs:
+        brains.mark_as_body(grid, word, matrix)
+    return grid
+
+
+def _name_segments(image: pv.DataSet, head: str) -> None:
+    """Give labels the names and the colours of the segments in a header."""
+    parts: dict[str, dict[str, str]] = {}
+    for number, key, value in _SEGMENT.findall(head):
+        parts.setdefault(number, {})[key] = value.strip()
+    kinds = []
+    for part in parts.values():
+        try:
+            color = [float(word) for word in part["Color"].split()]
+            kinds.append((int(part["LabelValue"]), part.get("Name", ""), color))
+        except (KeyError, ValueError):
+            return  # segments without labels or colours are layers of components
+    names = image.point_data.keys()
+    if kinds and len(names) == 1 and image.point_data[names[0]].dtype.kind in "iu":
+        image.rename_array(names[0], "segment", preference="point")
+        said = meaning.of(image)
+        said.add_kinds("segment", kinds)
+        meaning.attach(image, said)
