@@ -47,13 +47,14 @@ VIEWS: dict[str, Vector] = AXES | {
 #: Azimuth and altitude of the sun of maps, in degrees: cartographers' north-west.
 SUN = (315.0, 30.0)
 #: Lamps of a room in the frame of the eye, and the light from all around: each side of a box has
-#: another tone, and none less than 0.4 of the lightest. Colours are too faint to look like data.
+#: another tone, and none is black. Colours are too faint to look like data: cream from above, and
+#: fainter blue and brown, by which normals are read better than by grey alone.
 ROOM: Sequence[Keywords] = (
-    {"direction": (-0.35, 0.75, 0.55), "color": (1.0, 0.99, 0.96), "intensity": 0.55},
-    {"direction": (-0.9, -0.1, 0.45), "color": (0.96, 0.98, 1.0), "intensity": 0.25},
-    {"direction": (0.3, -0.1, 1.0), "color": (0.97, 0.99, 1.0), "intensity": 0.2},
+    {"direction": (-0.4, 0.85, 0.6), "color": (1.0, 0.985, 0.93), "intensity": 0.6},
+    {"direction": (0.8, 0.1, 0.8), "color": (0.8, 0.9, 1.0), "intensity": 0.28},
+    {"direction": (-0.6, -0.3, 0.9), "color": (1.0, 0.9, 0.82), "intensity": 0.26},
 )
-AROUND = 0.45
+AROUND = 0.35
 #: Degrees of longitude from which on a map is one of the whole earth.
 GLOBAL = 340.0
 #: Height of letters of numbers around a box, in those of keys.
