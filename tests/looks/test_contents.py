@@ -262,6 +262,7 @@ def test_arrays_that_tell_the_place_are_no_vectors_and_come_last():
     places = {"IX": x // 5, "IY": y // 5, "IZ": z // 2, "XC": x, "IJK": x // 5 + 8 * (y // 5)}
     for name, values in places.items():
         grid.cell_data[name] = values
+    grid.cell_data["FROM"] = np.random.default_rng(1).random(grid.n_cells)
     grid.cell_data["__in"] = np.random.default_rng(0).random(grid.n_cells)
     grid.cell_data["Au"] = np.exp(-(((x - 20) / 9) ** 2))
     arrays = Contents(grid).arrays

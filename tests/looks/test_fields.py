@@ -330,3 +330,14 @@ def test_streamlines_have_the_colours_of_the_temperature_that_they_carry():
     assert look.key[0]["title"] == "temperature; arrows point downstream"
     speed_drawing = vizlight.look(volume, array="wind").drawing
     assert speed_drawing.layers[0].keywords["scalars"] == "speed"
+
+
+def test_strokes_of_a_slab_lie_in_its_middle_and_not_on_its_sides():
+    slab = pv.ImageData(dimensions=(31, 21, 2), spacing=(1, 1, 3)).cast_to_unstructured_grid()
+    x, y, _ = slab.points.T
+    slab["U"] = np.column_stack([10 - y, x - 15, 0 * x])
+    look = vizlight.look(slab)
+    assert "with strokes" in look.drawing.words
+    drawn = {layer.mesh.name: layer.mesh.run() for layer in look.drawing.layers}
+    for name in ("plane", "strokes"):
+        assert drawn[name].bounds[4:] == pytest.approx((1.5, 1.5))

@@ -41,6 +41,16 @@ def test_a_long_tail_of_many_values_is_seen_to_its_end():
     assert not any(shown.clipped)
 
 
+def test_properties_of_rock_over_decades_have_a_logarithmic_bar():
+    values = np.random.default_rng(0).lognormal(4, 2, 4000)
+    shown = range_shown(values, decades=True)
+    assert shown.logarithmic
+    assert shown.high >= values.max()
+    assert shown.low <= np.percentile(values, 2)
+    assert not range_shown(values).logarithmic
+    assert not range_shown(np.linspace(3, 9, 50), decades=True).logarithmic
+
+
 def test_one_repeated_value_far_outside_is_a_region_apart():
     values = np.concatenate([RANDOM.normal(2.4, 0.4, 4000), np.zeros(200)])
     shown = range_shown(values)

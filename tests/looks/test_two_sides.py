@@ -64,8 +64,9 @@ def test_a_hemisphere_of_the_cortex_has_named_sides_and_a_unit():
     blocks = drawing.layers[0].mesh.arguments[0].run()
     assert blocks.keys() == ["Right hemisphere, lateral", "Right hemisphere, medial"]
     assert drawing.keys[0]["title"] == "cortical thickness (mm)"
-    mesh["curv_left"] = mesh["thickness"]
+    mesh["curv_left"] = mesh["thick_left"] = mesh["thickness"]
     assert vizlight.look(mesh, array="curv_left").key[0]["title"] == "curvature (1/mm)"
+    assert vizlight.look(mesh, array="thick_left").key[0]["title"] == "cortical thickness (mm)"
     # Its front is at the right of the lateral side, which is the right one, toward x.
     captions = drawing.layers[-1].mesh
     assert captions.path == "render.captions"

@@ -55,6 +55,22 @@ def test_a_solid_with_stresses_shows_them_whatever_moves_it():
     assert vizlight.look(mesh).array == "S_Mises"
 
 
+@pytest.mark.parametrize(
+    ("largest", "factor", "words"),
+    [(0.5, 1, "; displaced"), (1e-3, 500, "; displaced 500 times"), (50.0, None, "")],
+)
+def test_a_solid_with_stresses_is_displaced_so_that_it_is_seen(largest, factor, words):
+    mesh = bar([[1, 0, 0, 0, 0, 0], [2, 0, 0, 0, 0, 0]])
+    mesh["U"] = np.outer(mesh.points[:, 0] / 10, [0, 0, largest])
+    look = vizlight.look(mesh)
+    top = 1 + (factor or 0) * largest
+    assert look.mesh.bounds[5] == pytest.approx(top)
+    assert look.drawing.keys[0]["title"].partition(" stress")[2] == words
+    assert any("displaced by" in note for note in look.notes) == bool(factor)
+    # Who asks for other vectors has these.
+    assert vizlight.look(mesh, warp="U", exaggeration=2.0).mesh.bounds[5] == 1 + 2 * largest
+
+
 def test_an_array_that_is_no_tensor_is_named():
     mesh = bar([[1.0, 2, 3], [4, 5, 6]], "U")
     with pytest.raises(ValueError, match="name: expected an array of tensors of 4, 6 or 9 columns"):

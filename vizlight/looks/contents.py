@@ -92,8 +92,9 @@ _OF_GRID = re.compile(
     r"(^|[^a-z])(mask|mapfac\w*|map (scale )?factor|coriolis|(sin|cos)alpha|cell[ _]area"
     r"|area[ _]of[ _]grid[ _]cell|angle between|angle of (the )?grid|grid_angle\w*|grid angle)"
 )
-#: Words of names of errors of other arrays.
+#: Words of names of errors of other arrays, and names of the ends of parts of drill holes.
 _OF_ERRORS = {"error", "errors", "err", "stderr", "uncertainty", "residual", "residuals"}
+_OF_PARTS = {"from", "to"}
 #: Names of heights: of terrain, of the sea bed, of a surface of pressure.
 _HEIGHTS = re.compile(
     r"(^|[^a-z])(elev\w*|dems?|topo\w*|heights?|altitudes?|orog\w*|bathy\w*|relief|hgt|depths?)"
@@ -345,7 +346,7 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
         static = of_file and _OF_GRID.search(words) is not None
         static |= array.name in of_place or array.name.startswith("_")
-        static |= not _OF_ERRORS.isdisjoint(_words(array.name))
+        static |= not _OF_ERRORS.isdisjoint(_words(array.name)) or array.name.lower() in _OF_PARTS
         is_inactive = array.name not in active
         return (kinds, static, is_inactive, array.name in parts, array.of_cells != kinds)
 

@@ -674,6 +674,8 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     tensors = stresses.tensors_of(step.run())
     if tensors is not None and not stresses.has_von_mises(step.run()):
         step = Step("strained", "files.with_von_mises", step, tensors)
+    step, note = look_options.displaced(step, wishes)
+    notes += [note] if note else []
     of_light = (wishes.light.get(name) for name in ("normals", "occlusion", "positions"))
     without = tuple(name for name in of_light if isinstance(name, str))
     contents = Contents(step.run(), raster, without)

@@ -15,13 +15,23 @@ import pyvista as pv
 from vizlight import _check, files
 from vizlight._words import one_of, value_error
 from vizlight.draw import render
+from vizlight.draw.ticks import round_length
 from vizlight.filters import tint
 from vizlight.filters.streamlines import vectors_by_default
 from vizlight.looks import cuts, map_parts
 from vizlight.looks.contents import Contents
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import STYLES, Wishes, direction, scene_step
-from vizlight.mesh import charts, georeference, globes, height_grids, meaning, nspace, series
+from vizlight.mesh import (
+    charts,
+    georeference,
+    globes,
+    height_grids,
+    meaning,
+    nspace,
+    series,
+    stresses,
+)
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import PRESETS, required_scene
@@ -44,6 +54,11 @@ PICTURE = (
     "background", "line_width", "cmap", "clim", "scalars", "key", "map_parts", "backend",
     "progress", "title", "frames", "fps",
 )  # fmt: skip
+
+
+#: Shares of the size of a solid within which the longest displacement is seen, and the share to
+#: which a shorter one is taken.
+SEEN, MOVED = (0.02, 0.3), 0.05
 
 
 def checked(options: Mapping[str, Given]) -> Keywords:
@@ -252,6 +267,22 @@ def charted(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Conte
     if charts.is_torn(chart.run()):
         return step, contents
     return chart, replace(contents, mesh=chart.run())
+
+
+def displaced(step: Step, wishes: Wishes) -> tuple[Step, str]:
+    """Return the step that moves a solid with stresses by its displacements, and the note on it."""
+    mesh = step.run()
+    longest = stresses.displacement(mesh)
+    if longest is None or not stresses.has_von_mises(mesh) or wishes.part.get("warp") is not None:
+        return step, ""
+    name, length = longest
+    if length > SEEN[1] * mesh.length:
+        return step, ""
+    factor = 1.0 if length > SEEN[0] * mesh.length else round_length(MOVED * mesh.length / length)
+    if meaning.is_planar(mesh[name]):
+        step = Step("padded", "files.with_vectors", step, name)
+    moved = Step("displaced", "files.warped", step, name, factor)
+    return moved, f"the solid is displaced by {factor:g} times {name}; warp= takes other vectors"
 
 
 def in_space(

@@ -18,6 +18,8 @@ FENCE, MOST_OUTSIDE, LEAST_FREED, FEW, FREED_BY_MANY = 4.5, 0.1, 0.32, 0.002, (0
 #: Ratio of the 98th percentile to the median from which lengths have a logarithmic bar, and the
 #: ratio of its ends at most.
 SKEWED, DECADES = 10.0, 100.0
+#: Percentiles of positive values, and the ratio between them from which a bar is logarithmic.
+ENDS, WIDE = (2, 98), 10.0
 #: Share of the values that are one value far outside, from which it stands for a region apart.
 APART = 0.01
 #: Percentile of the values of a scan from which on they are white.
@@ -101,7 +103,9 @@ def range_of_scan(values: Array) -> Range:
     return Range(_rounded(low, step, np.floor), end, clipped=(False, high > end))
 
 
-def range_shown(values: Array, *, lengths: bool = False, amounts: bool = False) -> Range:
+def range_shown(
+    values: Array, *, lengths: bool = False, amounts: bool = False, decades: bool = False
+) -> Range:
     """Return the range of a bar that shows values.
 
     Parameters
@@ -112,6 +116,8 @@ def range_shown(values: Array, *, lengths: bool = False, amounts: bool = False) 
         Whether they are lengths of vectors, with a bar that may be logarithmic.
     amounts : bool
         Whether they may be amounts on a map, with such a bar, and a ground where they are 0.
+    decades : bool
+        Whether they are such as permeabilities, with such a bar where they differ by much.
 
     Returns
     -------
@@ -138,6 +144,12 @@ def range_shown(values: Array, *, lengths: bool = False, amounts: bool = False) 
                 return Range(bottom, top, clipped=(True, high > top), apart=True)
             end = even_ends(0.0, high)[1]
             return Range(LEAST_AMOUNT * end, end, clipped=(True, False), ground=True)
+    if decades and low > 0:
+        first, last = np.percentile(values, ENDS)
+        if last > WIDE * first:
+            bottom = max(end for end in _of_decades(first) if end <= first)
+            top = next(end for end in _of_decades(high) if end >= high)
+            return Range(bottom, top, True, clipped=(low < bottom, False))
     fences = (
         max(low, median + FENCE * (first - median)), min(high, median + FENCE * (third - median)),
     )  # fmt: skip

@@ -33,7 +33,8 @@ SIDES, BEYOND = ((50.0, 95.0), (130.0, 205.0), (85.0, 150.0)), 15.0
 #: Numbers of points of common templates, and words and units of the arrays that FreeSurfer makes.
 TEMPLATES = {2562, 10242, 40962, 163842, 32492}
 MEASURES = {
-    "thickness": ("cortical thickness", "mm"), "curv": ("curvature", "1/mm"),
+    "thickness": ("cortical thickness", "mm"), "thick": ("cortical thickness", "mm"),
+    "curv": ("curvature", "1/mm"),
     "area": ("area", "mm2"), "volume": ("volume", "mm3"), "sulc": ("sulcal depth", ""),
 }  # fmt: skip
 #: Words of names that say the side alone.

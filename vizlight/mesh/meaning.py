@@ -602,12 +602,28 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
 _CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius", "deg c"}
 #: Names of temperatures, in lower case.
 _TEMPERATURE = re.compile(r"t|theta|(.*[^a-z])?temp(erature)?s?([^a-z].*)?|(.*[^a-z])?(sst|tas)")
+#: Names of properties of rock that differ by decades, in lower case.
+_IN_DECADES = re.compile(r"perm[_ ]?[xyz\d]*$|(.*[^a-z])?(permeab|conductiv|resistiv|transmiss)")
 #: Symbols of units that are written out, and of their prefixes.
 _PREFIXES = {"": "", "kilo": "k", "hecto": "h", "centi": "c", "milli": "m"}
 _SYMBOLS = {"meter": "m", "metre": "m", "second": "s", "gram": "g", "pascal": "Pa", "kelvin": "K"}
 _WRITTEN_OUT = re.compile("(kilo|hecto|centi|milli)?(meter|metre|second|gram|pascal|kelvin)s?")
 #: A factor of a unit, such as m, s-1, s**-1 or m^2.
 _FACTOR = re.compile(r"([A-Za-z%]+)(?:\*\*|\^)?(-?[1-3])?")
+
+
+def is_in_decades(mesh: pv.DataSet, name: str) -> bool:
+    """Return whether an array is one of permeabilities, conductivities or resistivities.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    name : str
+        Name of an array.
+    """
+    attributes = of(mesh).arrays.get(name, {})
+    words = (name, attributes.get("standard_name", ""), attributes.get("long_name", ""))
+    return any(_IN_DECADES.match(word.lower()) for word in words)
 
 
 def is_temperature(mesh: pv.DataSet, name: str) -> bool:

@@ -18,6 +18,8 @@ __all__ = ["with_von_mises"]
 #: Name of the array of von Mises stress, and names of arrays of tensors of stress.
 VON_MISES = "von Mises stress"
 _STRESS = re.compile(r"(.*[^a-z])?(s|stress(es)?|sigma|cauchy)([^a-z].*)?")
+#: Names of displacements in a mesh with stresses.
+_DISPLACEMENT = re.compile(r"(.*[^a-z])?(u|d(e?pl|isp\w*)|deform\w*)([^a-z].*)?")
 #: Columns of the normal and of the shear stresses by the number of columns: in a plane with that
 #: across it, in space, and of a whole tensor.
 _COLUMNS = {4: ((0, 1, 2), (3,)), 6: ((0, 1, 2), (3, 4, 5)), 9: ((0, 4, 8), (1, 2, 5))}
@@ -35,6 +37,22 @@ def tensors_of(mesh: pv.DataSet) -> str | None:
             columns = data[name].shape[1:]
             if columns in {(4,), (6,), (9,)} and _STRESS.fullmatch(name.lower()):
                 return name
+    return None
+
+
+def displacement(mesh: pv.DataSet) -> tuple[str, float] | None:
+    """Return the point array of displacements and the longest one, None where none has a length.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    for name in mesh.point_data:
+        rows = np.asarray(mesh.point_data[name])
+        if rows.shape[1:] in {(2,), (3,)} and _DISPLACEMENT.fullmatch(name.lower()):
+            longest = float(np.sqrt((rows.astype(np.float64) ** 2).sum(axis=1)).max())
+            if 0 < longest < np.inf:
+                return name, longest
     return None
 
 

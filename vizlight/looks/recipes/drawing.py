@@ -552,6 +552,7 @@ class Case:
             is_even = limits is not None and limits[0] == -limits[1]
             cmap = AROUND_ZERO[cmap] if is_even and is_plain else cmap
             return {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors, ""
+        kind["decades"] = meaning.is_in_decades(self.data.run(), name)
         shown = range_of_scan(values) if scan else range_shown(values, **kind)
         if shown.is_signed and is_plain:
             shown, cmap = shown.around_zero(values), AROUND_ZERO[cmap]
@@ -607,15 +608,18 @@ class Case:
         has_grey = isinstance(table, Step) and table.keywords.get("below_range_color") == MISSING
         if has_grey and brains.hemisphere(mesh):
             bar["title"] += "; grey: medial wall"
-        return bar | {"title": bar["title"] + times_as_high(self._exaggeration)}
+        return bar | {"title": bar["title"] + self._exaggeration}
 
     @property
-    def _exaggeration(self) -> float:
-        """Factor of the heights of what is drawn, 1 where they are as they are."""
+    def _exaggeration(self) -> str:
+        """Words in a title that say by how much points are moved, if they are."""
         for step in self.data.chain():
             if isinstance(step, Step) and step.path == "files.warped":
-                return float(step.arguments[2])  # type: ignore[arg-type]
-        return 1.0
+                factor = float(step.arguments[2])  # type: ignore[arg-type]
+                if step.name == "displaced":
+                    return "; displaced" if factor == 1 else f"; displaced {factor:g} times"
+                return times_as_high(factor)
+        return ""
 
     @property
     def needed_array(self) -> Named:

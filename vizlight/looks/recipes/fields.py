@@ -88,8 +88,13 @@ MOST_CELLS, SEEDS = 250_000, 300
 
 def vectors(case: Case) -> Drawing:
     """Draw vectors on a surface or a sheet: their lengths in colours under strokes, or light."""
-    array = case.needed_array
-    mesh = case.wishes.joined(case.surface, array)
+    array, contents = case.needed_array, case.contents
+    surface = case.surface
+    if contents.dimension == 3 and contents.flat_axis is not None and case.wishes.surface:
+        # The outer surface of a slab has sides too, on which strokes would follow its rim.
+        normal = "xyz"[contents.flat_axis]
+        surface = Step("plane", ".slice", case.data, normal, generate_triangles=True)
+    mesh = case.wishes.joined(surface, array)
     camera = case.camera(mesh)
     if case.wishes.question != "auto" or has_lines_only(mesh.run()):
         spacing = mesh.run().length * SPACING

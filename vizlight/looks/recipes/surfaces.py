@@ -14,6 +14,7 @@ from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.ranges import Range
 from vizlight.looks.recipes.drawing import (
     BESIDE,
+    DARK,
     LIGHTNESS,
     MOST_IN_KEY,
     ON_SURFACES,
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
 
 #: Colour of what is seen face on and has no data, and most cells whose edges are drawn on it.
 GREY, MOST_WITH_EDGES = "#9a9a9a", 5000
+#: Opacity of the edges of elements.
+FAINT = 0.35
 #: Length in pixels from which isolines on a solid are long, least share of their length in long
 #: ones, and least distance between them in pixels.
 LONG, SMOOTH, APART = 100.0, 0.9, 30.0
@@ -98,7 +101,7 @@ def values(case: Case) -> Drawing:
     elif array.role == "colors":
         keywords = {"rgb": True}
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **keywords}
-    shown |= case.wishes.drawn(light)
+    shown |= case.wishes.drawn(light) | _elements(case, mesh)
     lit = case.lit(mesh, scene, **light)
     keys = [] if array.role == "colors" else [case.bar(array, keywords)]
     words = f"{array.name} in colours"
@@ -127,6 +130,13 @@ def values(case: Case) -> Drawing:
     )  # fmt: skip
     is_smooth = array.role == "values" and not array.of_cells and case.contents.dimension == 3
     return _with_isolines(case, drawing) if bent and is_smooth else drawing
+
+
+def _elements(case: Case, mesh: Step) -> Keywords:
+    """Return the drawing of edges of elements, by which stresses that are computed are judged."""
+    if not case.contents.is_strained or mesh.run().n_cells > MOST_WITH_EDGES:
+        return {}
+    return {"show_edges": True, "edge_color": DARK, "edge_opacity": FAINT}
 
 
 def _with_isolines(case: Case, drawing: Drawing) -> Drawing:
