@@ -86,7 +86,7 @@ def test_gltf_has_the_colours_of_the_picture(volume, tmp_path, done):
     grid = pv.read(volume)
     grid["height"] = grid.points[:, 2]
     grid.save(volume)
-    options = ("--contour", "r", "--light", "1,2,3")
+    options = ("--contour", "r", "--level", "4", "--light", "1,2,3")
     for name, extra in (("a.glb", ()), ("B.GLB", ("--scalars", "height"))):
         assert f"mesh     {name}" in done("light", volume, *options, *extra, "-o", name)
     plain, colored = ((tmp_path / name).read_bytes() for name in ("a.glb", "B.GLB"))

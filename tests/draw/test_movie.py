@@ -167,7 +167,7 @@ def writers(monkeypatch):
     ("name", "options"),
     [
         ("t.gif", {"mode": "I", "duration": 50.0, "loop": 0}),
-        ("t.mp4", {"mode": "I", "fps": 20.0, "macro_block_size": 2}),
+        ("t.mp4", {"mode": "I", "fps": 20.0, "macro_block_size": 2, "ffmpeg_log_level": "error"}),
     ],
 )
 def test_what_a_movie_writer_is_told(turned, tmp_path, writers, name, options):

@@ -47,7 +47,7 @@ def test_values_are_at_their_places_in_angstroms(tmp_path):
 def test_orbitals_are_arrays_of_their_numbers(tmp_path):
     values = " ".join(map(str, range(48)))
     mesh = vizlight.read(written(tmp_path, atoms=-1, values=values, orbitals="2 5 6"))
-    assert meaning.line(mesh) == "x in angstroms, y, z"
+    assert meaning.line(mesh) == "x, y, z in angstroms"
     assert mesh["orbital 5"].max() == 46
     np.testing.assert_array_equal(mesh["orbital 6"], mesh["orbital 5"] + 1)
 

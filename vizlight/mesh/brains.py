@@ -248,17 +248,35 @@ def turned(rows: AnyArray, affine: AnyArray, name: str) -> pv.ImageData | pv.Str
     name : str
         Name of the array of the grid.
     """
-    import nibabel
-
-    turn = nibabel.io_orientation(affine)
-    affine = affine @ nibabel.orientations.inv_ornt_aff(turn, rows.shape[:3])
-    rows = nibabel.apply_orientation(rows, turn)
+    order, signs = _axes_of(affine)
+    rows = np.transpose(rows, (*order, *range(3, rows.ndim)))
+    backward = np.flatnonzero(signs < 0)
+    ends = affine[:3, order[backward]] @ (np.array(rows.shape)[backward] - 1)
+    rows = np.flip(rows, backward)
+    affine = np.column_stack([affine[:, order] * signs, affine[:, 3]])
+    affine[:3, 3] += ends
     grid = of_affine(affine, rows.shape[:3])
     kind = np.float32 if rows.dtype == np.float16 else rows.dtype.newbyteorder("=")
     grid.point_data[name] = np.ascontiguousarray(rows, dtype=kind).reshape(
         -1, *rows.shape[3:], order="F"
     )
     return grid
+
+
+def _axes_of(affine: AnyArray) -> tuple[AnyArray, AnyArray]:
+    """Return which axis of storage runs along x, y and z, and whether forward, 1, or back, -1."""
+    lengths = np.linalg.norm(affine[:3, :3], axis=0)
+    left, _, right = np.linalg.svd(affine[:3, :3] / np.where(lengths > 0, lengths, 1.0))
+    # The nearest matrix of axes at right angles, of which each stands for the one it is most along.
+    nearest = left @ right
+    order, signs = np.zeros(3, dtype=int), np.ones(3)
+    sizes = np.abs(nearest)
+    # The axis that is most along one of x, y and z first.
+    for stored in np.argsort(-sizes.max(axis=0), kind="stable"):
+        place = int(np.argmax(sizes[:, stored]))
+        order[place], signs[place] = stored, 1.0 if nearest[place, stored] >= 0 else -1.0
+        sizes[place] = -1.0
+    return order, signs
 
 
 def mark_as_body(grid: pv.DataSet, word: str, affine: AnyArray) -> None:
@@ -272,12 +290,12 @@ def mark_as_body(grid: pv.DataSet, word: str, affine: AnyArray) -> None:
     affine : ndarray, shape (4, 4)
         Matrix by which the file stores it.
     """
-    import nibabel
-
     grid.field_data[UNIT] = ["millimetre"]
     said = meaning.of(grid)
     said.axes = [*meaning.ANATOMY]
-    stored = "".join(nibabel.aff2axcodes(affine))
+    order, signs = _axes_of(affine)
+    letters = np.where(signs > 0, ("R", "A", "S"), ("L", "P", "I"))
+    stored = "".join(letters[np.argsort(order)])
     said.axes[-1] += f", in mm by the {word} of the header (stored {stored})"
     meaning.attach(grid, said)
 
