@@ -217,3 +217,21 @@ def test_a_scale_has_the_number_of_a_layer_and_says_whether_it_is_one_of_a_sea(
 ):
     assert scale.at(coordinate) == words
     assert scale.is_of_sea(coordinate) == of_sea
+
+
+@pytest.mark.parametrize(
+    ("name", "heat", "decades"),
+    [
+        ("T", True, False), ("Temp_K", True, False), ("sst", True, False), ("tempo", False, False),
+        ("PERMX", False, True), ("log10", False, False), ("permittivity", False, False),
+        ("Electrical resistivity", False, True), ("thermal_conductivity", False, True),
+    ],
+)  # fmt: skip
+def test_temperatures_and_properties_of_rock_are_known_by_their_names(name, heat, decades):
+    mesh = mesh_with(name)
+    assert meaning.is_temperature(mesh, name) == heat
+    assert meaning.is_in_decades(mesh, name) == decades
+    said = meaning.Meaning(arrays={"v": {"long_name": name}})
+    meaning.attach(mesh, said)
+    assert meaning.is_temperature(mesh, "v") == heat
+    assert meaning.is_in_decades(mesh, "v") == decades

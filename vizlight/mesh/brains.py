@@ -252,7 +252,7 @@ def turned(rows: AnyArray, affine: AnyArray, name: str) -> pv.ImageData | pv.Str
     rows = np.transpose(rows, (*order, *range(3, rows.ndim)))
     backward = np.flatnonzero(signs < 0)
     ends = affine[:3, order[backward]] @ (np.array(rows.shape)[backward] - 1)
-    rows = np.flip(rows, backward)
+    rows = np.flip(rows, tuple(backward.tolist()))
     affine = np.column_stack([affine[:, order] * signs, affine[:, 3]])
     affine[:3, 3] += ends
     grid = of_affine(affine, rows.shape[:3])

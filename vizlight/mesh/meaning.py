@@ -603,7 +603,7 @@ _CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree ce
 #: Names of temperatures, in lower case.
 _TEMPERATURE = re.compile(r"t|theta|(.*[^a-z])?temp(erature)?s?([^a-z].*)?|(.*[^a-z])?(sst|tas)")
 #: Names of properties of rock that differ by decades, in lower case.
-_IN_DECADES = re.compile(r"perm[_ ]?[xyz\d]*$|(.*[^a-z])?(permeab|conductiv|resistiv|transmiss)")
+_IN_DECADES = re.compile(r"perm[_ ]?[xyz\d]*|(.*[^a-z])?(permeab|conductiv|resistiv|transmiss).*")
 #: Symbols of units that are written out, and of their prefixes.
 _PREFIXES = {"": "", "kilo": "k", "hecto": "h", "centi": "c", "milli": "m"}
 _SYMBOLS = {"meter": "m", "metre": "m", "second": "s", "gram": "g", "pascal": "Pa", "kelvin": "K"}
@@ -621,9 +621,7 @@ def is_in_decades(mesh: pv.DataSet, name: str) -> bool:
     name : str
         Name of an array.
     """
-    attributes = of(mesh).arrays.get(name, {})
-    words = (name, attributes.get("standard_name", ""), attributes.get("long_name", ""))
-    return any(_IN_DECADES.match(word.lower()) for word in words)
+    return _is_called(mesh, name, _IN_DECADES)
 
 
 def is_temperature(mesh: pv.DataSet, name: str) -> bool:
@@ -635,9 +633,14 @@ def is_temperature(mesh: pv.DataSet, name: str) -> bool:
     name : str
         Name of an array.
     """
+    return _is_called(mesh, name, _TEMPERATURE)
+
+
+def _is_called(mesh: pv.DataSet, name: str, pattern: re.Pattern[str]) -> bool:
+    """Return whether a pattern is that of the name of an array, or of words of its file for it."""
     attributes = of(mesh).arrays.get(name, {})
     words = (name, attributes.get("standard_name", ""), attributes.get("long_name", ""))
-    return any(_TEMPERATURE.fullmatch(word.lower()) for word in words)
+    return any(pattern.fullmatch(word.lower()) for word in words)
 
 
 def _symbol(name: str) -> str:
