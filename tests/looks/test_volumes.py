@@ -53,6 +53,8 @@ def test_an_isosurface_is_cut_open_where_the_values_inside_differ(tmp_path):
     low, high = cut.get_data_range("T")
     assert outside["T"] == pytest.approx(low, abs=1e-3)
     assert high == pytest.approx(1, abs=0.05)
+    cells = grid.point_data_to_cell_data()
+    assert "with the values inside" in vizlight.look(cells, array="T").summary
     # Who asks for the shape has all of it, as has one whose values inside are the same.
     assert len(vizlight.look(grid, "shape").mesh.split_bodies()) == 1
     grid["T"] = np.minimum(grid["T"], 0.55)

@@ -143,6 +143,20 @@ def test_values_of_cells_stay_those_of_their_cells():
         assert set(part.cell_data["v"]) <= set(range(64))
 
 
+def test_with_a_level_values_of_cells_are_averaged_and_holes_are_left_out():
+    grid = pv.ImageData(dimensions=(21, 21, 21))
+    grid.cell_data["v"] = -np.linalg.norm(grid.cell_centers().points - 10, axis=1)
+    parts = files.without_corner(grid, "v", -6.0)
+    assert np.linalg.norm(parts["outside"].points - 10, axis=1) == pytest.approx(6, abs=0.3)
+    grid = grid.cell_data_to_point_data()
+    grid["v"][grid.points[:, 2] > 12] = np.nan
+    parts = files.without_corner(grid, "v", -6.0)
+    for part in (parts["cut"], parts["outside"]):
+        assert np.isfinite(part.points).all()
+        assert np.isfinite(part["v"]).all()
+        assert part.bounds[5] == 12
+
+
 def test_a_level_that_nothing_reaches_leaves_nothing():
     parts = files.without_corner(pv.ImageData(dimensions=(5, 5, 5)).elevation(), "Elevation", 9.0)
     assert not parts["cut"].n_points

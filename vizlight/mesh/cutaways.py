@@ -120,7 +120,8 @@ def without_corner(
     volume : pyvista.DataSet
         Mesh with solid cells, which is not changed.
     name : str
-        Name of an array of one number per point, or per cell where there is no level.
+        Name of an array of one number per point or per cell. Values of cells are averaged to the
+        points where there is a level; cells at points without a finite value are left out then.
     level : float, optional
         Level of the isosurface. Values above it are left, or those below it where fewer of those
         on the outer surface of the volume are. Default: all of the volume is left.
@@ -154,12 +155,10 @@ def without_corner(
     if not volume.n_cells or volume.max_cell_dimensionality != 3:
         raise _check.value_error("volume", "a mesh with solid cells", type(volume).__name__)
     name = _check.text("name", name, expected="the name of an array")
-    if level is not None or name not in volume.cell_data:
-        rows = records.scalars_of(volume, "name", name)
-        if level is not None and rows.dtype.kind in "biu":
-            # Parts of different types lose their values where they become one mesh.
-            volume = volume.copy(deep=False)
-            volume.point_data[name] = rows.astype(np.float64)
+    if level is not None:
+        volume = _whole(records.averaged(volume, name), name)
+    elif name not in volume.cell_data:
+        records.scalars_of(volume, "name", name)
     direction = np.array(_check.vector("toward", toward, direction=True, n=3))
     signs = np.where(np.abs(direction) < ALONG * np.abs(direction).max(), 0, np.sign(direction))
     hull = blocks.outer_surface(volume)[0]
@@ -185,6 +184,20 @@ def without_corner(
         faces.append(face)
     outside = [_flat_without(hull, middle, signs), _bent_without(isosurface, middle, signs)]
     return pv.MultiBlock({"cut": _merged(faces), "outside": _merged(outside)})
+
+
+def _whole(volume: pv.DataSet, name: str) -> pv.DataSet:
+    """Return a volume with finite values in floating point, without cells at other points."""
+    rows = records.scalars_of(volume, "name", name)
+    if rows.dtype.kind in "biu":
+        # Parts of different types lose their values where they become one mesh.
+        volume = volume.copy(deep=False)
+        volume.point_data[name] = rows.astype(np.float64)
+    finite = np.isfinite(rows)
+    whole: pv.DataSet = volume
+    if not finite.all():
+        whole = volume.extract_points(finite, adjacent_cells=False)
+    return whole
 
 
 def _ends(values: AnyArray) -> list[AnyArray]:
