@@ -12,7 +12,7 @@ from PIL import Image
 import vizlight
 from vizlight import Scene
 from vizlight.draw.vector import figure
-from vizlight.draw.vector.files import Words
+from vizlight.draw.vector.files import Fill, Sheet, Words, pdf_of, svg_of
 from vizlight.draw.vector.lines import lines_of
 from vizlight.draw.vector.samples import enlarged, samples_of
 from vizlight.draw.vector.words import words_of
@@ -111,6 +111,14 @@ def test_words_of_texts_keys_and_bars_are_text(plotter, tmp_path):
     words = re.findall(r"<tspan[^>]*>([^<]*)</tspan>", path.read_text())
     assert {"height &amp; depth", "above", "-0.500", "0.500"} <= set(words)
     assert "the way it faces" in " ".join(words)
+
+
+def test_a_colour_beyond_white_by_rounding_is_that_of_white():
+    square = np.array([[1.0, 1], [9, 1], [9, 9], [1, 9]])
+    for color in ((1.0 + 1e-7, 0.5, -1e-9), (1.0, 0.5, 0.0)):
+        sheet = Sheet((10, 10), (1.0, 1.0, 1.0), {"fills": [Fill(color, [square])]}, "")
+        assert 'fill="#ff8000"' in svg_of(sheet)
+        assert pdf_of(sheet).startswith(b"%PDF")
 
 
 def test_a_pdf_keeps_its_words_and_its_bytes(plotter, tmp_path):

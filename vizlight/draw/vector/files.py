@@ -248,7 +248,8 @@ def figure_of(sheet: Sheet) -> Figure:
     for order, item in enumerate(item for every in sheet.groups.values() for item in every):
         if isinstance(item, Fill):
             path = Path.make_compound_path(*(Path(ring, closed=False) for ring in _closed(item)))
-            patch = PathPatch(path, facecolor=item.color, linewidth=0)
+            # Between colours of a table rounding can end beyond 1.
+            patch = PathPatch(path, facecolor=_hex(item.color), linewidth=0)
         elif isinstance(item, Polyline):
             cap = "round" if item.round else "butt"
             patch = PathPatch(
