@@ -59,6 +59,8 @@ ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
 #: Most atoms of a molecule that are balls, their size in radii of van der Waals, and the sticks
 #: between them, in angstroms.
 MOST_BALLS, BALL, STICK = 1000, 0.2, {"radius": 0.1, "n_sides": 20}
+#: Most lines of a dense set that are shown by their direction.
+MOST_LINES = 7000
 #: Most atoms without bonds that are balls, and the size of these, which touch each other.
 MOST_ALONE, BALL_ALONE = 20_000, 0.5
 #: Size of atoms and sticks beside the chains of a large molecule, in that of others.
@@ -91,15 +93,23 @@ def lines(case: Case) -> Drawing:
     name, array = case.wishes.picture.get("scalars"), case.array
     if name == DIRECTION or (name is None and case.wishes.question == "auto" and array is None):
         lit = case.lit(mesh, scene, **light)
+        notes = list[str]()
+        if pen.get("halo") and (longest := _longest(mesh)) is not None:
+            notes = [longest.note]
+            camera = case.camera(longest)
+            pen = _pen(replace(case, data=longest), camera)
+            mesh = longest
         shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
         # Outlines tell lines apart by themselves; light would make those toward the eye as dark.
-        even = case.lit(mesh, even_light(camera)) if pen.get("halo") else lit
+        even = case.lit(mesh, even_light(camera)) if pen.get("halo") or notes else lit
         layer = Layer(_by_direction(even), shown | pen)
         table = Step("", "vizlight.maps.directions", meaning.ways(mesh.run()))
         key: Keywords = {"question": "value", "cmap": table}
-        key["title"] = with_file(mesh, "direction")
+        key["title"] = with_file(case.data, "direction")
+        if notes:
+            key["title"] += f"; the longest {mesh.run().n_cells} of {case.data.run().n_cells} lines"
         words = "lines by their direction"
-        return Drawing([layer], camera, scene, lit, words, [key], kind=mesh)
+        return Drawing([layer], camera, scene, lit, words, [key], notes, kind=case.data)
     if case.question == "value":
         array = case.needed_array
         colors, note = case.ranged_of(mesh, array, case.map_on_ground)
@@ -115,6 +125,23 @@ def lines(case: Case) -> Drawing:
     notes = [note] if note else []
     layers = [Layer(mesh, drawn), *_somas(case)]
     return Drawing(layers, camera, scene, lit, words, keys, notes, kind=case.data)
+
+
+def _longest(lines: Step) -> Step | None:
+    """Return the step that takes the longest of many lines, None where there are not too many.
+
+    Of a dense set of short and long lines the short ones hide the bundles that the others form.
+    """
+    mesh = lines.run()
+    if mesh.n_cells <= MOST_LINES:
+        return None
+    lengths = mesh.compute_cell_sizes(area=False, volume=False)["Length"]
+    least = float(f"{np.partition(lengths, -MOST_LINES)[-MOST_LINES]:.3g}")
+    sized = Step("sized", ".compute_cell_sizes", lines, area=False, volume=False)
+    longest = Step("longest", ".threshold", sized, least, scalars="Length")
+    longest = Step("longest", ".extract_surface", longest, algorithm="dataset_surface")
+    longest.note = f"lines of {least:g} and longer are shown"
+    return longest
 
 
 def is_tree(mesh: pv.DataSet) -> bool:

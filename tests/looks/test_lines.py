@@ -1,0 +1,38 @@
+"""Looks at lines: which of a dense set are shown."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import vizlight
+from vizlight.looks.recipes import lines
+
+
+def tangle(count, seed=0):
+    """Return straight lines in a cube, each longer than the one before."""
+    random = np.random.default_rng(seed)
+    lengths = np.linspace(0.02, 0.5, count)
+    ways = random.normal(size=(count, 3))
+    ways *= (lengths / np.linalg.norm(ways, axis=1))[:, np.newaxis]
+    begins = random.random((count, 3))
+    points = np.stack([begins, begins + ways], axis=1).reshape(-1, 3)
+    ids = np.arange(2 * count).reshape(-1, 2)
+    return pv.PolyData(points, lines=np.insert(ids, 0, 2, axis=1).ravel())
+
+
+def test_of_too_many_dense_lines_the_longest_are_shown_and_all_are_saved(monkeypatch, tmp_path):
+    monkeypatch.setattr(lines, "MOST_LINES", 500)
+    mesh = tangle(4000)
+    look = vizlight.look(mesh)
+    shown = look.drawing.layers[0].mesh.run()
+    assert shown.n_cells == pytest.approx(500, abs=5)
+    lengths = shown.compute_cell_sizes(area=False, volume=False)["Length"]
+    assert lengths.min() > np.quantile(np.linspace(0.02, 0.5, 4000), 0.87)
+    (key,) = look.drawing.keys
+    assert key["title"].endswith(f"direction; the longest {shown.n_cells} of 4000 lines")
+    assert any("lines of 0.44 and longer are shown" in note for note in look.notes)
+    assert look.mesh.n_cells == 4000
+    # Few, and those that leave room for each other, are all shown.
+    for few in (tangle(400), pv.PolyData(mesh.points * [40, 40, 0.0], lines=mesh.lines)):
+        drawing = vizlight.look(few).drawing
+        assert drawing.layers[0].mesh.run().n_cells == few.n_cells
