@@ -133,8 +133,9 @@ def values(case: Case) -> Drawing:
 
 
 def _elements(case: Case, mesh: Step) -> Keywords:
-    """Return the drawing of edges of elements, by which stresses that are computed are judged."""
-    if not case.contents.is_strained or mesh.run().n_cells > MOST_WITH_EDGES:
+    """Return the drawing of edges of the cells that stresses, or values of a solid, belong to."""
+    of_cells = case.needed_array.of_cells and case.contents.dimension == 3
+    if not (of_cells or case.contents.is_strained) or mesh.run().n_cells > MOST_WITH_EDGES:
         return {}
     return {"show_edges": True, "edge_color": DARK, "edge_opacity": FAINT}
 
