@@ -748,3 +748,15 @@ def test_points_of_no_cell_that_are_far_from_all_cells_are_left_out(tmp_path):
     more.points[-1] = 1
     more.save(tmp_path / "b.vtu")
     assert vizlight.read(tmp_path / "b.vtu").n_points == 28
+
+
+def test_cells_of_grdecl_share_their_points(tmp_path):
+    pillars = "\n".join(f"{x} {y} 0 {x} {y} 9" for y in (0, 1) for x in (0, 1, 2))
+    depths = "8*1\n8*3"
+    text = f"SPECGRID\n2 1 1 1 F /\nCOORD\n{pillars} /\nZCORN\n{depths} /\nPERMX\n5 700 /\n"
+    (tmp_path / "a.grdecl").write_text(text)
+    mesh = vizlight.read(tmp_path / "a.grdecl")
+    assert (mesh.n_cells, mesh.n_points) == (2, 12)
+    # The face between the two cells is not one of the outer surface.
+    assert mesh.extract_surface(algorithm="dataset_surface").n_cells == 10
+    assert mesh.cell_data["PERMX"].tolist() == [5, 700]

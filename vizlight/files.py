@@ -520,6 +520,9 @@ def _whole(
     elif suffix in PIECES:
         # Pieces have cells of their neighbours, and points of their own along the seams.
         mesh = normals.welded(joining.without_ghosts(mesh))
+    elif suffix == ".grdecl":
+        # Each cell has points of its own, so that faces between cells would be outer ones.
+        mesh = normals.welded(mesh.cast_to_unstructured_grid())
     elif isinstance(mesh, pv.UnstructuredGrid) and not overlays and _has_points_outside(mesh):
         count = mesh.n_points
         mesh = mesh.remove_unused_points()
