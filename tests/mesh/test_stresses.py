@@ -67,6 +67,10 @@ def test_a_solid_with_stresses_is_displaced_so_that_it_is_seen(largest, factor, 
     assert look.mesh.bounds[5] == pytest.approx(top)
     assert look.drawing.keys[0]["title"].partition(" stress")[2] == words
     assert any("displaced by" in note for note in look.notes) == bool(factor)
+    # The outline of what it was is around the whole of it.
+    outline = [layer.mesh.run() for layer in look.drawing.layers if layer.mesh.name == "outline"]
+    assert len(outline) == bool(factor)
+    assert all(edges.bounds == mesh.bounds for edges in outline)
     # Who asks for other vectors has these.
     assert vizlight.look(mesh, warp="U", exaggeration=2.0).mesh.bounds[5] == 1 + 2 * largest
 

@@ -42,8 +42,8 @@ if TYPE_CHECKING:
 
 #: Colour of what is seen face on and has no data, and most cells whose edges are drawn on it.
 GREY, MOST_WITH_EDGES = "#9a9a9a", 5000
-#: Opacity of the edges of elements.
-FAINT = 0.35
+#: Opacity of the edges of elements, and outline of a solid before it is displaced.
+FAINT, BEFORE = 0.35, {"color": "#8a8a8a"}
 #: Length in pixels from which isolines on a solid are long, least share of their length in long
 #: ones, and least distance between them in pixels.
 LONG, SMOOTH, APART = 100.0, 0.9, 30.0
@@ -75,9 +75,10 @@ def values(case: Case) -> Drawing:
             drawing = values(replace(case, data=inner, contents=Contents(inner.run())))
             note = f"{array.name} {kinds[0]:g}, which is around all else, is left out"
             return replace(drawing, notes=[*drawing.notes, note])
-    sides = case.sides
+    sides, outline = case.sides, _undisplaced(case)
     if sides is None:
-        camera = case.camera(mesh)
+        whole = mesh if outline is None else Step("", "pyvista.MultiBlock", [mesh, outline])
+        camera = case.camera(whole, case.eye(mesh))
     else:
         camera, names = sides.camera_and_names(case.wishes)
     light = case.wishes.light_of_surface()
@@ -120,7 +121,7 @@ def values(case: Case) -> Drawing:
         title = f"{keys[0]['title']}; {count} kinds"
         keys = [keys[0] | TITLE_ALONE | {"title": title}]
     if sides is None:
-        layers = [Layer(mesh, shown), *edges.edges(camera)]
+        layers = [Layer(mesh, shown), *edges.edges(camera), *case.strokes([outline], **BEFORE)]
     else:
         layers = [*(Layer(side, shown) for side in sides.layers()), case.inked(names)]
     drawing = Drawing(
@@ -130,6 +131,16 @@ def values(case: Case) -> Drawing:
     )  # fmt: skip
     is_smooth = array.role == "values" and not array.of_cells and case.contents.dimension == 3
     return _with_isolines(case, drawing) if bent and is_smooth else drawing
+
+
+def _undisplaced(case: Case) -> Step | None:
+    """Return the step of the outline of a solid before its displacement, None for all else."""
+    for step in case.data.chain():
+        if isinstance(step, Step) and step.name == "displaced":
+            surface = Step("before", "files.surface_of", step.arguments[0])
+            edges = Step("outline", ".extract_feature_edges", surface, manifold_edges=False)
+            return edges if edges.run().n_cells else None
+    return None
 
 
 def _elements(case: Case, mesh: Step) -> Keywords:
