@@ -445,7 +445,10 @@ def _lidar(path: Path) -> pv.PolyData:
     """Return the points of a LAS file with intensity, classification and colours."""
     import laspy
 
-    cloud: Foreign = laspy.read(path)
+    # Threads that unpacked one file do not live on in the process that tries the next.
+    ways = laspy.LazBackend.detect_available()
+    alone = [way for way in ways if way is not laspy.LazBackend.LazrsParallel]
+    cloud: Foreign = laspy.read(path, laz_backend=alone or None)
     mesh = pv.PolyData(np.asarray(cloud.xyz, dtype=np.float64))
     mesh.point_data["intensity"] = np.asarray(cloud.intensity)
     mesh.point_data["classification"] = np.asarray(cloud.classification)

@@ -77,8 +77,8 @@ def values(case: Case) -> Drawing:
             return replace(drawing, notes=[*drawing.notes, note])
     sides, outline = case.sides, _undisplaced(case)
     if sides is None:
-        whole = mesh if outline is None else Step("", "pyvista.MultiBlock", [mesh, outline])
-        camera = case.camera(whole, case.eye(mesh))
+        framed = mesh if outline is None else Step("", "pyvista.MultiBlock", [mesh, outline])
+        camera = case.camera(framed, case.eye(mesh))
     else:
         camera, names = sides.camera_and_names(case.wishes)
     light = case.wishes.light_of_surface()
