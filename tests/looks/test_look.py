@@ -299,9 +299,10 @@ def test_options_win_over_the_rule():
     assert (on.question, on.array) == ("direction", "V")
     # Without a level the isosurface is where the values are steepest, which a note tells.
     steepest, _ = levels.best_level(mesh, "T")
-    found = vizlight.look(mesh, contour="T", size=SIZE)
-    np.testing.assert_allclose(found.mesh["T"], steepest, rtol=1e-5)
-    assert f"the level of T is {levels.number(steepest)}, where it is steepest" in found.notes
+    without_level = vizlight.look(mesh, contour="T", size=SIZE)
+    np.testing.assert_allclose(without_level.mesh["T"], steepest, rtol=1e-5)
+    note = f"the level of T is {levels.number(steepest)}, where it is steepest"
+    assert note in without_level.notes
     look = vizlight.look(mesh, view="x", size=SIZE, scene="shape")
     toward = np.subtract(look.view.position, look.view.focal_point)
     np.testing.assert_allclose(toward / np.linalg.norm(toward), (1, 0, 0), atol=1e-9)

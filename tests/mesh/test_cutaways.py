@@ -100,9 +100,9 @@ def test_a_block_has_the_area_and_the_values_of_one_without_a_corner(toward):
     x, y, z = sizes = np.array([32.0, 30.0, 28.0])
     faces = np.array([y * z, x * z, x * y]) / 2.0 ** (np.sum(signs != 0) - 1)
     ends = np.prod(sizes) / sizes * 2 / 2.0 ** np.sum(signs != 0)
-    taken = (faces * (signs != 0)).sum() + (ends * (signs == 0)).sum()
+    removed = (faces * (signs != 0)).sum() + (ends * (signs == 0)).sum()
     assert cut.area == pytest.approx((faces * (signs != 0)).sum(), rel=1e-4)
-    assert outside.area == pytest.approx(area - taken, rel=1e-4)
+    assert outside.area == pytest.approx(area - removed, rel=1e-4)
 
 
 @pytest.mark.parametrize("low", [False, True])

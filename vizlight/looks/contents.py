@@ -193,7 +193,7 @@ class Contents:
     @cached_property
     def is_strained(self) -> bool:
         """Whether it has stresses."""
-        return stresses.tensors_of(self.mesh) is not None or stresses.has_von_mises(self.mesh)
+        return stresses.are_in(self.mesh)
 
     @cached_property
     def is_part(self) -> bool:

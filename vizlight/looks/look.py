@@ -26,15 +26,7 @@ from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, run, source, written
 from vizlight.looks.wishes import even_light, is_whole_earth
-from vizlight.mesh import (
-    blocks,
-    cf_grids,
-    georeference,
-    height_grids,
-    meaning,
-    series,
-    stresses,
-)
+from vizlight.mesh import blocks, cf_grids, georeference, height_grids, meaning, series
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
@@ -671,11 +663,8 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     if georeference.is_earth(mesh):
         step = Step("chart", "vizlight.cartography.in_degrees", step)
         notes.append("x and y are those of the whole earth in degrees, and taken for them")
-    tensors = stresses.tensors_of(step.run())
-    if tensors is not None and not stresses.has_von_mises(step.run()):
-        step = Step("strained", "files.with_von_mises", step, tensors)
-    step, note = look_options.displaced(step, wishes)
-    notes += [note] if note else []
+    step = look_options.strained(step, wishes)
+    notes += [step.note] if step.note else []
     of_light = (wishes.light.get(name) for name in ("normals", "occlusion", "positions"))
     without = tuple(name for name in of_light if isinstance(name, str))
     contents = Contents(step.run(), raster, without)

@@ -20,7 +20,7 @@ from vizlight.filters import tint
 from vizlight.filters.streamlines import vectors_by_default
 from vizlight.looks import cuts, map_parts
 from vizlight.looks.contents import Contents
-from vizlight.looks.steps import Step
+from vizlight.looks.steps import DISPLACED, Step
 from vizlight.looks.wishes import STYLES, Wishes, direction, scene_step
 from vizlight.mesh import (
     charts,
@@ -269,20 +269,25 @@ def charted(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Conte
     return chart, replace(contents, mesh=chart.run())
 
 
-def displaced(step: Step, wishes: Wishes) -> tuple[Step, str]:
-    """Return the step that moves a solid with stresses by its displacements, and the note on it."""
+def strained(step: Step, wishes: Wishes) -> Step:
+    """Return the step that gives a solid with stresses that of von Mises, and displaces it."""
     mesh = step.run()
+    if not stresses.are_in(mesh):
+        return step
+    if not stresses.has_von_mises(mesh):
+        step = Step("strained", "files.with_von_mises", step, stresses.tensors_of(mesh))
     longest = stresses.displacement(mesh)
-    if longest is None or not stresses.has_von_mises(mesh) or wishes.part.get("warp") is not None:
-        return step, ""
+    if longest is None or wishes.part.get("warp") is not None:
+        return step
     name, length = longest
     if length > SEEN[1] * mesh.length:
-        return step, ""
+        return step
     factor = 1.0 if length > SEEN[0] * mesh.length else round_length(MOVED * mesh.length / length)
     if meaning.is_planar(mesh[name]):
         step = Step("padded", "files.with_vectors", step, name)
-    moved = Step("displaced", "files.warped", step, name, factor)
-    return moved, f"the solid is displaced by {factor:g} times {name}; warp= takes other vectors"
+    moved = Step(DISPLACED, "files.warped", step, name, factor)
+    moved.note = f"the solid is displaced by {factor:g} times {name}; warp= takes other vectors"
+    return moved
 
 
 def in_space(

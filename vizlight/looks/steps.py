@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 MODULES = (("json", "pathlib"), ("distributed", "numpy", "pyvista"), ("vizlight", "vizlight.maps"))
 OWN = ("files", "film", "movie", "paraview", "render")
 INDENT, WIDTH = 4, 88
+#: Name of the step that moves a solid by its displacements.
+DISPLACED = "displaced"
 #: Indentation at which nothing is broken.
 ONE_LINE = -(10**6)
 

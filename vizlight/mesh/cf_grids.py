@@ -746,9 +746,7 @@ class _Reader:
         """Say at which height, depth or pressure a single layer is, if its axis has a unit."""
         along = self._coordinate(dim)
         if self.letters[dim][0] == "z" and along is not None and along.dtype.kind in "iuf":
-            ticks: Array = np.array(along.values, dtype=np.float64)
-            heights, _, scale = _up(str(along.name), along.attrs, ticks, "")
-            self.said.level = scale.at(float(heights[index]))
+            self.said.level = _level(along, index)
 
     def _say_single_level(self, mesh: pv.DataSet) -> None:
         """Say the level of a file of one layer that names it beside its axes, as CF does."""
@@ -762,10 +760,7 @@ class _Reader:
         ]
         if said.level or said.section or len(levels) != 1 or len(said.axes) != 2:
             return
-        (along,) = levels
-        ticks: Array = np.array([along.values], dtype=np.float64)
-        heights, _, scale = _up(str(along.name), along.attrs, ticks, "")
-        said.level = self.said.level = scale.at(float(heights[0]))
+        said.level = self.said.level = _level(levels[0], 0)
         meaning.attach(mesh, said)
 
     def _say_of_array(self, name: str, variable: Foreign) -> None:
@@ -1301,6 +1296,13 @@ def _titled(name: str, attributes: Mapping[str, Foreign]) -> str:
 def _unit_of_axis(unit: str) -> str:
     """Return the unit of the numbers along an axis as it is printed."""
     return "" if unit == "1" else meaning.written(unit)
+
+
+def _level(along: Foreign, index: int) -> str:
+    """Return the height, depth or pressure at an index of an axis with its unit."""
+    ticks: Array = np.array(along.values, dtype=np.float64, ndmin=1)
+    heights, _, scale = _up(str(along.name), along.attrs, ticks, "")
+    return scale.at(float(heights[index]))
 
 
 def _up(

@@ -601,7 +601,7 @@ def covers_itself(mesh: pv.DataSet) -> bool:
 def eye_distance(mesh: pv.DataSet) -> float:
     """Return a distance of the eye on the last axis from which all of a mesh is before it.
 
-    Of points on a sphere about the origin it is the radius, for the stereographic projection.
+    It is the radius for points on a sphere about the origin, for the stereographic projection.
     """
     places: Array = np.asarray(mesh.point_data[POSITION], dtype=np.float64)
     radii, top = np.linalg.norm(places, axis=1), float(places[:, 3:].max())

@@ -56,6 +56,16 @@ def displacement(mesh: pv.DataSet) -> tuple[str, float] | None:
     return None
 
 
+def are_in(mesh: pv.DataSet) -> bool:
+    """Return whether a mesh has stresses: their tensors, or that of von Mises.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    return has_von_mises(mesh) or tensors_of(mesh) is not None
+
+
 def has_von_mises(mesh: pv.DataSet) -> bool:
     """Return whether an array of a mesh has the name of von Mises.
 

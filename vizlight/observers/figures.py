@@ -64,7 +64,7 @@ class Figure:
 
         A reader has room for ``1 / guessed`` answers that far apart, and needs ``-log2(guessed)``
         bits to tell one from the others. The score is 0 where a question is unreadable, and above 1
-        where more is told than is asked.
+        for a picture that tells more than is asked.
         """
         return 0.0 if self.unreadable else self.bits / -math.log2(self.guessed)
 

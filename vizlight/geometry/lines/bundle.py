@@ -545,8 +545,8 @@ class Medium:
         toward = toward.astype(np.float32)
         facing = targets.facing(toward)
         *depths, columns = self.depths(targets.places, toward, thick)
-        own = targets.own_depth(columns, thick)
-        forth, back = _left(np.stack(depths), own, _crowded(thick))
+        own_depths = targets.own_depth(columns, thick)
+        forth, back = _left(np.stack(depths), own_depths, _crowded(thick))
         # Light from each end counts by the share of it that the point would receive.
         return facing[0] * forth + facing[1] * back, facing.sum(axis=0)
 

@@ -26,7 +26,7 @@ from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
 from vizlight.looks.ranges import range_of_scan, range_shown
-from vizlight.looks.steps import Step
+from vizlight.looks.steps import DISPLACED, Step
 from vizlight.maps import MISSING
 from vizlight.mesh import brains, dates, georeference, globes, meaning, series
 from vizlight.shading.results import part_name
@@ -613,13 +613,19 @@ class Case:
     @property
     def _exaggeration(self) -> str:
         """Words in a title that say by how much points are moved, if they are."""
-        for step in self.data.chain():
-            if isinstance(step, Step) and step.path == "files.warped":
-                factor = float(step.arguments[2])  # type: ignore[arg-type]
-                if step.name == "displaced":
-                    return "; displaced" if factor == 1 else f"; displaced {factor:g} times"
-                return times_as_high(factor)
-        return ""
+        step = self.moved
+        if step is None:
+            return ""
+        factor = float(step.arguments[2])  # type: ignore[arg-type]
+        if step.name == DISPLACED:
+            return "; displaced" if factor == 1 else f"; displaced {factor:g} times"
+        return times_as_high(factor)
+
+    @property
+    def moved(self) -> Step | None:
+        """Step that moves the points of the mesh, None where they are as they were read."""
+        steps = (step for step in self.data.chain() if isinstance(step, Step))
+        return next((step for step in steps if step.path == "files.warped"), None)
 
     @property
     def needed_array(self) -> Named:

@@ -93,22 +93,23 @@ def lines(case: Case) -> Drawing:
     name, array = case.wishes.picture.get("scalars"), case.array
     if name == DIRECTION or (name is None and case.wishes.question == "auto" and array is None):
         lit = case.lit(mesh, scene, **light)
-        notes = list[str]()
-        if pen.get("halo") and (longest := _longest(mesh)) is not None:
-            notes = [longest.note]
+        is_dense = bool(pen.get("halo"))
+        longest = _longest(mesh) if is_dense else None
+        if longest is not None:
             camera = case.camera(longest)
             pen = _pen(replace(case, data=longest), camera)
             mesh = longest
         shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
         # Outlines tell lines apart by themselves; light would make those toward the eye as dark.
-        even = case.lit(mesh, even_light(camera)) if pen.get("halo") or notes else lit
+        even = case.lit(mesh, even_light(camera)) if is_dense else lit
         layer = Layer(_by_direction(even), shown | pen)
         table = Step("", "vizlight.maps.directions", meaning.ways(mesh.run()))
         key: Keywords = {"question": "value", "cmap": table}
         key["title"] = with_file(case.data, "direction")
-        if notes:
+        if longest is not None:
             key["title"] += f"; the longest {mesh.run().n_cells} of {case.data.run().n_cells} lines"
         words = "lines by their direction"
+        notes = [] if longest is None else [longest.note]
         return Drawing([layer], camera, scene, lit, words, [key], notes, kind=case.data)
     if case.question == "value":
         array = case.needed_array
@@ -130,7 +131,7 @@ def lines(case: Case) -> Drawing:
 def _longest(lines: Step) -> Step | None:
     """Return the step that takes the longest of many lines, None where there are not too many.
 
-    Of a dense set of short and long lines the short ones hide the bundles that the others form.
+    Short lines hide the bundles that long ones form.
     """
     mesh = lines.run()
     if mesh.n_cells <= MOST_LINES:

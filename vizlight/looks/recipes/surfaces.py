@@ -29,7 +29,7 @@ from vizlight.looks.recipes.drawing import (
     unlit,
 )
 from vizlight.looks.recipes.fields import pixel_of
-from vizlight.looks.steps import Step
+from vizlight.looks.steps import DISPLACED, Step
 from vizlight.mesh import blocks, meaning
 from vizlight.mesh.nspace import POSITION
 
@@ -135,12 +135,12 @@ def values(case: Case) -> Drawing:
 
 def _undisplaced(case: Case) -> Step | None:
     """Return the step of the outline of a solid before its displacement, None for all else."""
-    for step in case.data.chain():
-        if isinstance(step, Step) and step.name == "displaced":
-            surface = Step("before", "files.surface_of", step.arguments[0])
-            edges = Step("outline", ".extract_feature_edges", surface, manifold_edges=False)
-            return edges if edges.run().n_cells else None
-    return None
+    moved = case.moved
+    if moved is None or moved.name != DISPLACED:
+        return None
+    surface = Step("before", "files.surface_of", moved.arguments[0])
+    edges = Step("outline", ".extract_feature_edges", surface, manifold_edges=False)
+    return edges if edges.run().n_cells else None
 
 
 def _elements(case: Case, mesh: Step) -> Keywords:
