@@ -193,6 +193,57 @@ def test_what_hides_a_mesh_and_what_is_nearly_clear():
     assert pixels[1] == pytest.approx(pixels[0] / 2, rel=0.03)
 
 
+def test_walls_without_their_near_sides_hide_nothing():
+    mesh = sheet()
+    box = pv.Cube(center=mesh.center, x_length=9, y_length=9, z_length=3)
+    plotter, _ = plotter_of(mesh, **DIRECTION)
+    plotter.camera = from_above(mesh)
+    bare = plotter.vizlight.legibility(**HOW).pixels
+    walls = plotter.add_mesh(box, culling="front", lighting=False, pickable=False)
+    assert plotter.vizlight.legibility(**HOW).pixels == bare
+    walls.prop.culling = "back"
+    with pytest.raises(ValueError, match="a point that the eye sees"):
+        plotter.vizlight.legibility(**HOW)
+    plotter.close()
+
+
+def test_strokes_are_read_where_they_are_as_wide_as_they_are_drawn():
+    line = pv.MultipleLines([[x, 0, 0] for x in np.linspace(-1, 1, 41)])
+    line["width"] = np.linspace(0.1, 1, 41)
+    plotter = pv.Plotter(off_screen=True, window_size=(400, 100), lighting="none")
+    plotter.vizlight.add_mesh(
+        line,
+        scene=FLAT,
+        color="black",
+        width="width",
+        line_width=24,
+        halo=False,
+        show_scalar_bar=False,
+    )
+    plotter.background_color = "white"
+    plotter.camera = camera_on(line, (0, 0, 1), up=(0, 1, 0), aspect=4)
+    read = plotter.vizlight.legibility(**HOW)
+    dark = np.asarray(plotter.screenshot(return_img=True))[..., 0] < 128
+    plotter.close()
+    assert read.pixels == pytest.approx(dark.sum(), rel=0.15)
+
+
+def test_speeds_are_told_by_the_bar_of_lines_whose_tangents_have_one_length():
+    grid = pv.ImageData(dimensions=(21, 21, 3), origin=(-1, -1, 0), spacing=(0.1, 0.1, 0.1))
+    x, y, z = np.asarray(grid.points).T
+    grid["v"] = np.column_stack([1.1 + y, 0 * x, 0 * z])
+    lines = vizlight.streamlines(grid, tangents="v", spacing=0.15)
+    plotter = pv.Plotter(off_screen=True, window_size=(360, 240), lighting="none")
+    # This map rises and falls in lightness.
+    plotter.vizlight.add_mesh(
+        lines, scene=FLAT, scalars="speed", cmap="turbo", line_width=6, show_scalar_bar=False
+    )
+    plotter.camera = from_above(grid)
+    read = plotter.vizlight.legibility(**HOW)
+    plotter.close()
+    assert read.speed.spearman > 0.85
+
+
 def test_a_point_hides_as_much_as_it_covers():
     plotter, _ = plotter_of(sheet(20), **SHAPE)
     bare = plotter.vizlight.legibility(samples=16).pixels

@@ -142,6 +142,11 @@ def color_of_halo(stroke: Stroke, renderer: vtkRenderer) -> tuple[float, float, 
     return red, green, blue
 
 
+def shares_of(mesh: pv.DataSet, width: str) -> Array:
+    """Return the shares of the width of lines that a point array tells, from 0 to 1."""
+    return np.clip(np.nan_to_num(mesh.point_data[width], nan=0.0), 0.0, 1.0)
+
+
 def directions(mesh: pv.DataSet, width: str | None = None) -> Array:
     """Return the directions of lines at their points, with lengths that say how they are drawn.
 
@@ -159,7 +164,7 @@ def directions(mesh: pv.DataSet, width: str | None = None) -> Array:
     """
     lengths = 1 + polylines.of_points(mesh, _ends)
     if width is not None:
-        lengths += 0.5 * np.clip(np.nan_to_num(mesh.point_data[width], nan=0.0), 0.0, 1.0)
+        lengths += 0.5 * shares_of(mesh, width)
     return polylines.line_tangents(mesh) * lengths[:, np.newaxis]
 
 

@@ -644,8 +644,13 @@ class _PictureReader:
             length, color = np.asarray(p.here.magnitude), p.colors.lab
             if np.ptp(length) > 1e-3 * length.max():
                 signals = [color[:, 0], np.hypot(color[:, 1], color[:, 2])]
-                for signal in signals if p.length is None else [*signals, p.length]:
-                    figures.append(Speed(**self._ranked(length, signal, [p])))
+                signals += [] if p.length is None else [p.length]
+                if p.part.table is not None:
+                    signals += [
+                        readers.places_on_bar(p.colors, p.part.table, lit=lit)
+                        for lit in (False, True)
+                    ]
+                figures += [Speed(**self._ranked(length, signal, [p])) for signal in signals]
         return max(figures, key=lambda each: each.bits, default=None)
 
     def _ranked(self, magnitude: Array, signal: Array, groups: list[SeenPlaces]) -> Keywords:

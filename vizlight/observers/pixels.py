@@ -54,21 +54,31 @@ class Cells(NamedTuple):
         Width of points and of lines in pixels, the least width of lines that have a diameter.
     diameter : float or None
         Diameter of lines in the unit of the mesh.
+    shares : ndarray, shape (N,), or None
+        Shares of the width, from 0 to 1, that lines have at their points; None for one width.
     """
 
     points: ArraySource
     corners: Indices | DrawnCells | DrawnPoints
     width: float
     diameter: float | None = None
+    shares: Array | None = None
+
+    @property
+    def are_bands(self) -> bool:
+        """Whether lines are drawn as bands, two triangles for each segment."""
+        return self.diameter is not None or self.shares is not None
 
     def data(self, rows: Slice, camera: pv.Camera, height: int) -> vtkPolyData:
-        """Return some points, segments or triangles as a mesh of VTK; lines of a diameter as bands.
+        """Return some points, segments or triangles as a mesh of VTK, lines as bands if need be.
 
         Its points are those of these cells.
         """
-        points, corners = with_own_points(self.points, np.asarray(self.corners[rows]))
-        if self.diameter is not None:
-            points, corners = self._bands(points, corners, camera, height)
+        ids = np.asarray(self.corners[rows])
+        points, corners = with_own_points(self.points, ids)
+        if self.are_bands:
+            shares = None if self.shares is None else with_own_points(self.shares, ids)[0]
+            points, corners = self._bands(points, corners, shares, camera, height)
         kind = corners.shape[1]
         cells, data = vtkCellArray(), vtkPolyData()
         cells.SetData(kind, as_vtk(corners.astype(np.int32).ravel()))
@@ -80,27 +90,35 @@ class Cells(NamedTuple):
 
     def widths(self, cells: Indices, camera: pv.Camera, height: int) -> Array:
         """Return the widths in pixels where some cells begin, in a picture of some height."""
-        if self.diameter is None:
-            return np.broadcast_to(self.width, len(cells))
-        points = rows_of(self.points, self.corners[cells][:, 0]).astype(np.float64)
-        return np.asarray(np.maximum(self.diameter / footprint(camera, points, height), self.width))
+        first = self.corners[cells][:, 0]
+        widths = np.full(len(first), self.width)
+        if self.diameter is not None:
+            points = rows_of(self.points, first).astype(np.float64)
+            widths = np.maximum(self.diameter / footprint(camera, points, height), self.width)
+        return widths if self.shares is None else widths * self.shares[first]
 
     def _bands(
-        self, points: Array, corners: Indices, camera: pv.Camera, height: int
+        self,
+        points: Array,
+        corners: Indices,
+        shares: Array | None,
+        camera: pv.Camera,
+        height: int,
     ) -> tuple[Array, Indices]:
         """Return lines as bands that face the eye, two triangles for each segment.
 
-        They are nearer to the eye by half of their width, as a tube is.
+        They are nearer to the eye by half of their whole width, as a tube is.
         """
         points = points.astype(np.float64)
         size = footprint(camera, points, height)
         toward = toward_eye(camera, points)
         radius = np.maximum(self.diameter or 0.0, self.width * size)[:, np.newaxis] / 2
+        reach = radius if shares is None else radius * shares[:, np.newaxis]
         start, end = corners.T
         along = points[end] - points[start]
         places = []
         for ids in (start, end):
-            across = radius[ids] * unit_rows(np.cross(toward[ids], along))
+            across = reach[ids] * unit_rows(np.cross(toward[ids], along))
             near = points[ids] + radius[ids] * toward[ids]
             places += [near - across, near + across]
         first = np.arange(len(start)) * 4
@@ -311,7 +329,7 @@ def toward_eye(camera: pv.Camera, points: Array) -> Array:
 def _actor(block: _Block, data: vtkPolyData, start: int) -> vtkActor:
     """Return cells with their numbers, from ``start``, as flat colours; 0 is background."""
     number = np.arange(start, start + block.size, dtype=np.int32)
-    if block.mesh.diameter is not None:
+    if block.mesh.are_bands:
         # A segment is two triangles.
         number = np.repeat(number, 2)
     colors = np.stack([number >> place & 255 for place in (16, 8, 0)], axis=1).astype(np.uint8)

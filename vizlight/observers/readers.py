@@ -539,6 +539,27 @@ def read_value(colors: Colors, positions: Array, table: pv.LookupTable, *, lit: 
     Reading
         Distances on the bar, as shares of its length.
     """
+    logarithms, count, first = _on_bar(colors, table, lit=lit)
+    # What is below the bar is one step below it.
+    positions = np.maximum(positions, -0.5 / count)
+    right = np.minimum(np.floor(positions * count).astype(np.intp), count - 1) + first
+    other = elsewhere(len(positions))
+    answer = (_drawn(logarithms) - first + 0.5) / count
+    error, other_error = np.abs(answer - np.stack([positions, positions[other]]))
+    return _compared(error, other_error, logarithms, right, other)
+
+
+def places_on_bar(colors: Colors, table: pv.LookupTable, *, lit: bool) -> Array:
+    """Return where colours stand on a bar most likely, from 0 to 1, and less below it."""
+    logarithms, count, first = _on_bar(colors, table, lit=lit)
+    return np.asarray((logarithms.argmax(axis=1) - first + 0.5) / count)
+
+
+def _on_bar(colors: Colors, table: pv.LookupTable, *, lit: bool) -> tuple[Array, int, int]:
+    """Return the logarithms of the likelihoods of the colours of a bar, and how many there are.
+
+    The last number is the first of these colours: 1 where one stands below the bar, else 0.
+    """
     whole = np.asarray(table.values)[:, :3]
     count = min(BAR, len(whole))
     bar = whole[((np.arange(count) + 0.5) / count * len(whole)).astype(np.intp)]
@@ -546,15 +567,7 @@ def read_value(colors: Colors, positions: Array, table: pv.LookupTable, *, lit: 
     if below is not None:
         bar = np.concatenate([np.rint(255 * below[np.newaxis]).astype(np.uint8), bar])
     amounts = np.linspace(display.LEAST, 1.0, AMOUNTS) if lit else np.ones(1)
-    logarithms = likelihood(colors, lab(_in_amounts(bar, amounts)))
-    # What is below the bar is one step below it.
-    first = len(bar) - count
-    positions = np.maximum(positions, -0.5 / count)
-    right = np.minimum(np.floor(positions * count).astype(np.intp), count - 1) + first
-    other = elsewhere(len(positions))
-    answer = (_drawn(logarithms) - first + 0.5) / count
-    error, other_error = np.abs(answer - np.stack([positions, positions[other]]))
-    return _compared(error, other_error, logarithms, right, other)
+    return likelihood(colors, lab(_in_amounts(bar, amounts))), count, len(bar) - count
 
 
 def light_of(colors: Colors, table: pv.LookupTable) -> Colors:

@@ -14,6 +14,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.draw.cameras import VIEW_ANGLE, camera_on
 from vizlight.filters.lighting import part_of
+from vizlight.filters.streamlines import SPEED, TANGENTS, own_name
 from vizlight.mesh import subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import length_rows, unit_rows
@@ -141,7 +142,7 @@ def sample(part: SeenMesh, pixels: Pixels, camera: pv.Camera) -> Sample:
         Camera of the picture.
     """
     names, cell = np.unique(pixels.cell, return_inverse=True)
-    part = part.near(names)
+    whole, part = part, part.near(names)
     cells = part.cells[cell]
     m, s = cells.shape
     ids = cells.ravel()
@@ -164,13 +165,26 @@ def sample(part: SeenMesh, pixels: Pixels, camera: pv.Camera) -> Sample:
     if part.values is not None:
         rows = part.values[cell if part.flat else ids].astype(np.float64)
         values = rows if part.flat else np.asarray(interpolated(rows, places))
-    if part.inputs.tangents is not None and part.inputs.tangents.shape[1] == 3:
+    if (speeds := _speeds(whole)) is not None:
+        # The tangents of streamlines have the length 1.
+        magnitude = interpolated(speeds[whole.cells[names][cell].ravel()], places)
+    elif part.inputs.tangents is not None and part.inputs.tangents.shape[1] == 3:
         magnitude = interpolated(length_rows(rows_of(part.inputs.tangents, ids)), places)
     return Sample(
         kind=part.kind, points=points, eye=toward, right=right, up=np.cross(toward, right),
         tangents=tangents, normals=normals, values=values, valid=valid, scene=part.scene,
         options=part.options, magnitude=magnitude,
     )  # fmt: skip
+
+
+def _speeds(part: SeenMesh) -> Array | None:
+    """Return the lengths of the vectors along which streamlines were traced, None without."""
+    if part.kind != "line" or part.light.tangents != TANGENTS:
+        return None
+    arrays = part.mesh.point_data
+    # A speed of the data that were traced is beside that of the lines.
+    name = own_name(part.mesh, SPEED) if own_name(part.mesh, SPEED) in arrays else SPEED
+    return np.asarray(arrays[name], dtype=np.float64) if name in arrays else None
 
 
 def _tangents(part: SeenMesh, ids: Indices, places: Places) -> Array | None:
@@ -237,6 +251,8 @@ class SeenMesh:
         Width of lines or points in pixels, the least width of lines that have a diameter.
     diameter : float or None
         Diameter of lines in the unit of the mesh.
+    shares : ndarray, shape (N,), or None
+        Shares of the width that lines have at their points; None for lines of one width.
     glyph : ndarray of int, shape (C,), or None
         Numbers of the glyphs that cells belong to; None where they are no glyphs.
     by_axes : bool
@@ -261,6 +277,7 @@ class SeenMesh:
     table: pv.LookupTable | None = None
     width: float = 1.0
     diameter: float | None = None
+    shares: Array | None = None
     glyph: Indices | None = None
     by_axes: bool = False
     large: bool = False
@@ -281,7 +298,7 @@ class SeenMesh:
     def drawn(self) -> Cells:
         """Points and cells to draw."""
         points = _moved_points(points_of(self.mesh, None), self.matrix)
-        return Cells(points, self.cells, self.width, self.diameter)
+        return Cells(points, self.cells, self.width, self.diameter, self.shares)
 
     def ahead(self, cells: Indices) -> Array:
         """Return whether segments run with the data, by their vectors or by the time along them.

@@ -15,7 +15,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper, vtkGlyph3DMa
 from vizlight import _check
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.live import Live, items, matrix_of
-from vizlight.draw.strokes import SUPERSAMPLED, has_pass
+from vizlight.draw.strokes import SUPERSAMPLED, has_pass, shares_of
 from vizlight.filters.tint import unlit_colors, values_of
 from vizlight.mesh import records
 from vizlight.mesh.polylines import direction_colors
@@ -199,7 +199,7 @@ def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Se
     options = dataclasses.replace(options, feature_angle=None)
     return part_on(
         mesh, scene, options, matrix=matrix_of(actor.GetMatrix()), lit=lit, width=width,
-        diameter=live.stroke.diameter, **colors,
+        **_stroke_of(live), **colors,
     )  # fmt: skip
 
 
@@ -268,9 +268,15 @@ def _colored(
     scene = Scene(lights=Light.headlight(), view=View.from_camera(renderer.GetActiveCamera()))
     return part_on(
         mesh, scene, LightOptions(tangents=marks), matrix=matrix_of(actor.GetMatrix()),
-        width=width, lit=False,
-        diameter=None if live is None else live.stroke.diameter, **colors,
+        width=width, lit=False, **({} if live is None else _stroke_of(live)), **colors,
     )  # fmt: skip
+
+
+def _stroke_of(live: Live) -> Keywords:
+    """Return how wide the lines of a mesh with light are drawn."""
+    stroke = live.stroke
+    shares = None if stroke.width is None else shares_of(live.source.mesh, stroke.width)
+    return {"diameter": stroke.diameter, "shares": shares}
 
 
 def _values(
@@ -330,6 +336,9 @@ def _occluder(actor: vtkActor, pixel: float) -> vtkActor:
     style.SetLineWidth(max(1.0, actor.GetProperty().GetLineWidth() / pixel))
     style.SetPointSize(max(1.0, actor.GetProperty().GetPointSize() / pixel))
     style.SetRepresentation(actor.GetProperty().GetRepresentation())
+    # Walls whose near sides are left out let through what they enclose.
+    style.SetFrontfaceCulling(actor.GetProperty().GetFrontfaceCulling())
+    style.SetBackfaceCulling(actor.GetProperty().GetBackfaceCulling())
     return copy
 
 
