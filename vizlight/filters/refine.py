@@ -105,8 +105,8 @@ def refine(
     Raises
     ------
     TypeError, ValueError
-        As :func:`vizlight.illuminate`; if the mesh has cells that fill space, or neither faces nor
-        lines.
+        As :func:`vizlight.illuminate`; if the mesh has neither faces nor lines. Of cells that fill
+        space the outer surface is refined.
 
     Warns
     -----

@@ -374,10 +374,10 @@ def _rows(mesh: pv.PolyData) -> Indices:
     return np.concatenate([np.arange(mesh.n_cells - len(size)), rows])
 
 
-def _stay(mesh: pv.DataSet, normals: vtk_normals.Sided) -> bool:
+def _stay(mesh: pv.DataSet, normals: vtk_normals.Sided, fewest: int = FEWEST) -> bool:
     """Return whether normals are kept with a mesh of this kind and size."""
     made = normals.computed and not normals.kept and normals.lean is not None
-    return made and n_points(mesh) >= FEWEST and isinstance(mesh, _KINDS)
+    return made and n_points(mesh) >= fewest and isinstance(mesh, _KINDS)
 
 
 def to_keep(
@@ -400,9 +400,9 @@ def to_keep(
             yield number, normals
 
 
-def keep(mesh: pv.DataSet, normals: vtk_normals.Sided) -> None:
-    """Attach normals that were computed to a mesh, unless it is small; see :func:`records.keep`."""
-    if not len(normals.vectors) or not _stay(mesh, normals):
+def keep(mesh: pv.DataSet, normals: vtk_normals.Sided, fewest: int = FEWEST) -> None:
+    """Attach normals that were computed to a mesh of so many points; see :func:`records.keep`."""
+    if not len(normals.vectors) or not _stay(mesh, normals, fewest):
         return
     rows = np.empty((len(normals.vectors), 5), dtype=np.float32)
     # One array, so that it travels with the mesh through files as a whole or not at all.

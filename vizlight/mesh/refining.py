@@ -12,7 +12,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._types import Array, Bools, Indices
-from vizlight.mesh import records, subdivision
+from vizlight.mesh import normals, records, subdivision
 from vizlight.mesh.subdivision import SplitCells
 from vizlight.scene import Scene
 from vizlight.shading import engine
@@ -123,6 +123,9 @@ def refined(
     if origin is None and options.tangents is None and extended.inputs.tangents is not None:
         tangents = np.asarray(extended.inputs.tangents[:])
         records.keep(split_mesh, subdivision.TANGENTS, "refine", tangents)
+    # So would normals be those of the flat triangles.
+    if extended.sided is not None:
+        normals.keep(split_mesh, extended.sided, fewest=1)
     return Refined(split_mesh, extended, left)
 
 
