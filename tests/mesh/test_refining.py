@@ -627,3 +627,15 @@ def test_a_line_of_one_point_stays_one():
     with pytest.warns(UserWarning, match="1 of 1 points could not be lit"):
         found = vizlight.refine(mesh, vizlight.Scene())
     assert (found.n_points, found.lines.tolist()) == (1, [1, 0])
+
+
+@pytest.mark.parametrize("angle", [30, "auto", None])
+@pytest.mark.filterwarnings("ignore:.*sharper than 30 degrees")
+def test_the_light_of_a_small_refined_mesh_is_that_of_its_record(angle):
+    cone = pv.Cone(resolution=12).triangulate()
+    cone.point_data.clear()
+    scene = Scene(lights=Light(direction=(0.4, -0.3, 0.85)), view=View(direction=(1, 1, 1)))
+    fine = vizlight.refine(cone, scene, feature_angle=angle)
+    assert fine.n_points > cone.n_points
+    # It refuses light that is another one.
+    assert vizlight.check(fine).between < vizlight.check(vizlight.illuminate(cone, scene)).between
