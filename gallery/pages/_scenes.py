@@ -155,7 +155,7 @@ def _export(plotter, renderer, path, title):
         # The view shows light as it is kept with the mesh, such as that for an eye in 4-space.
         mappers = [one.mapper for one in renderer.actors.values() if isinstance(one, pv.Actor)]
         meshes = [getattr(m, "dataset", None) for m in mappers if m.GetScalarVisibility()]
-        lit = [mesh for mesh in meshes if "luminance" in getattr(mesh, "point_data", ())]
+        lit = [m for m in meshes if "luminance_provenance" in getattr(m, "array_names", ())]
         if not lit:
             return False
         look = {"camera": renderer.camera, "background": renderer.background_color}
