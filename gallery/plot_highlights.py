@@ -24,7 +24,9 @@ def shiny(mesh, degrees, model, power):
     scene = Scene(
         lights=Light(direction=(-np.sin(angle), 0, np.cos(angle))),
         view=View(direction=(0, 0, 1)),
-        material=Material(ambient=0.25, diffuse=0, specular=0.75, shininess=power),
+        material=Material(
+            ambient=0.4, diffuse=0, specular=0.6, shininess=power, color=(0.28, 0.5, 0.85)
+        ),
     )
     return vizlight.illuminate(mesh, scene, model=model)
 
@@ -45,7 +47,7 @@ camera = render.camera_on(
     (-5, 10.1, -12.2, 2.2, 0, 0), (0, 0, 1), parallel=True, aspect=1.05, zoom=1.38
 )
 look = {"background": "#14181d", "light": "points"}
-plotter = render.make_plotter(render.Panel(balls), camera=camera, size=(1200, 1140), **look)
+plotter = render.make_plotter(render.Panel(balls, "rgb"), camera=camera, size=(1200, 1140), **look)
 letters = {"text_color": "white", "font_size": 20, "shape": None, "show_points": False}
 places = [(-4.9, -2.2 * row - 0.1, 1) for row in range(len(rows))]
 places += [(2.2 * column - 0.3, 1.35, 1) for column in range(len(angles))] + [(-4.9, 1.35, 1)]
@@ -72,7 +74,7 @@ for model, factor in (("phong", 1), ("blinn", 4)):
             lit = shiny(shape, 45, model, factor * power)
             block.append(lit.translate((2.2 * column, -2.2 * row, 0)))
     used = ", ".join(f"{factor * power}" for power in powers)
-    panels.append(render.Panel(block, title=f"{model.title()}, powers {used}"))
+    panels.append(render.Panel(block, "rgb", f"{model.title()}, powers {used}"))
 camera = render.camera_on(block, (0, 0, 1), parallel=True, aspect=0.75, zoom=0.94)
 plotter = render.make_plotter(panels, camera=camera, size=(1200, 860), **look)
 plotter.show()

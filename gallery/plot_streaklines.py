@@ -18,7 +18,7 @@ import pyvista as pv
 import vizlight
 from vizlight import Light, Material, Scene, View, render
 
-times = np.linspace(0, 8, 81)
+times = np.linspace(0, 6.4, 65)  # a streak has at most 64 points
 steps = []
 for time in times:
     step = pv.ImageData(dimensions=(141, 61, 3), spacing=(0.05, 0.05, 0.05), origin=(0, -1.5, 0))
@@ -35,7 +35,7 @@ for time in times:
     steps.append(step)
 
 seeds = np.linspace((0.05, -0.32, 0.05), (0.05, 0.32, 0.05), 26)
-camera = render.camera_on((0.1, 6.5, -1, 1, 0, 0.1), (0, -0.3, 1), aspect=2.7, zoom=2.35)
+camera = render.camera_on((0.2, 5.0, -1, 1, 0, 0.1), (0, -0.3, 1), aspect=2.7, zoom=2.6)
 scene = Scene(
     lights=Light(direction=(-0.7, 0.6, 0.6)),
     view=View.from_camera(camera),
@@ -46,7 +46,7 @@ frames = vizlight.pathlines(
     model="cylinder", step=0.6,
 )  # fmt: skip
 
-plotter = pv.Plotter(off_screen=True, window_size=(780, 296))
+plotter = pv.Plotter(off_screen=True, window_size=(700, 266))
 plotter.background_color = "#14181d"
 plotter.enable_anti_aliasing("ssaa")
 plotter.camera = camera
@@ -57,8 +57,8 @@ for number, lines in enumerate(frames):
     lines["age"] = lines.field_data["TimeValue"][0] - lines["Time"]
     lit = vizlight.tint(lines, "age", cmap="RdYlBu", clim=(-1, 6))
     plotter.add_mesh(
-        lit, scalars="rgb", rgb=True, lighting=False, line_width=1.6, name="smoke", render=False
+        lit, scalars="rgb", rgb=True, lighting=False, line_width=1.8, name="smoke", render=False
     )
-    if number > 30 and number % 2:  # before, there is little smoke
+    if number > 44:  # before, there is little smoke
         plotter.write_frame()
 plotter.show()
