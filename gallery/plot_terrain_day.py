@@ -34,7 +34,7 @@ plotter = render.make_plotter(
     [render.Panel(day, name, name) for name in names],
     camera=render.camera_on(terrain, (0, 0, 1), parallel=True, aspect=0.83, zoom=0.86),
     rows=2,
-    size=(1500, 1200),
+    size=(1140, 912),
     cmap="bone",
     background="white",
 )
