@@ -32,7 +32,7 @@ day["mean of the five"] = np.asarray(day["t"]).mean(axis=1)
 names = [*(f"{hour:.0f}:00" for hour in hours), "mean of the five"]
 plotter = render.make_plotter(
     [render.Panel(day, name, name) for name in names],
-    camera=render.camera_on(terrain, (0, 0, 1), parallel=True, aspect=0.83, zoom=0.86),
+    camera=render.camera_on(terrain, (0, 0, 1), parallel=True, aspect=0.83, zoom=0.82),
     rows=2,
     size=(1140, 912),
     cmap="bone",
@@ -40,6 +40,6 @@ plotter = render.make_plotter(
 )
 plotter.add_scalar_bar(
     title="share of the direct sunlight\n", color="black", n_labels=3, fmt="%.1f",
-    position_x=0.1, position_y=0.01, width=0.8, height=0.065,
+    position_x=0.1, position_y=0.01, width=0.8, height=0.06, title_font_size=14,
 )  # fmt: skip
 plotter.show()
