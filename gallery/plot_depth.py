@@ -1,73 +1,57 @@
 """
-Depth cue, ambient light and distance
-=====================================
+Depth cue and ambient light
+===========================
 
-Light that fades with depth tells which of two lines is the nearer one: streamlines of a heated flow
-without a depth cue, with a linear one, and with one by a smooth step, which keeps more of the light
-in front. The formulas are those of lectures on illumination.
+Light that fades with depth tells which of two lines is the nearer one. Streamlines of a flow over
+a heated disk, without a depth cue and with one by a smooth step, which keeps the light of the
+nearer half and lets the farther half sink into the background. The formulas are those of lectures
+on illumination.
 """
 
 # sphinx_gallery_thumbnail_number = 1
-import matplotlib.pyplot as plt
-import numpy as np
 import pyvista as pv
 
 import vizlight
 from vizlight import DepthCue, Light, Material, Scene, View, render
-from vizlight.model import falloff
 
 flow = vizlight.load_example()
-camera = render.camera_on(flow.bounds, (1, 0.5, 0.55), zoom=1.05)
+camera = render.camera_on(flow, (1, 0.5, 0.75), aspect=0.62, zoom=1.0)
 scene = Scene(
-    lights=Light(direction=(1, 0.9, 0.5)),
+    lights=Light(direction=(1, 0.9, 0.8)),
     view=View.from_camera(camera),
-    material=Material(ambient=0.35, diffuse=0.65, color=(1.0, 0.9, 0.7)),
+    material=Material(ambient=0.45, diffuse=0.6, color=(1.0, 0.86, 0.6)),
 )
+dark = "#14181d"
+fog = DepthCue(cue=1.0, color=dark, smooth=True)
 panels = []
-for title, cue in (
-    ("no depth cue", None), ("linear", DepthCue()), ("smooth step", DepthCue(smooth=True)),
-):  # fmt: skip
+for title, cue in (("without depth cue", None), ("with depth cue", fog)):
     lines = vizlight.streamlines(
-        flow, scene.replace(depth_cue=cue), tangents="V", seeds=flow.points[::120], max_length=60
+        flow, scene.replace(depth_cue=cue), tangents="V", seeds=flow.points[::220], max_length=60
     )
     panels.append(render.Panel(lines, "rgb", title))
-look = {"camera": camera, "background": "black", "line_width": 3}
-plotter = render.make_plotter(panels, size=(1650, 720), **look)
+look = {"camera": camera, "background": dark, "line_diameter": 0.1}
+plotter = render.make_plotter(panels, size=(1300, 1000), **look)
 plotter.show()
 
 # %%
-# Ambient light reaches all points alike. From left to right the material reflects more of it, from
-# bottom to top the scene has more: with ka = 0 nothing changes.
+# Ambient light reaches all points alike: Ia is that of the scene, and ka the share of it that the
+# material reflects. Without either, the dark side of a ball is black.
 
-ball = pv.Sphere(radius=1, theta_resolution=90, phi_resolution=90)
-balls = pv.MultiBlock()
-for row, around in enumerate((0.0, 0.3, 0.6, 1.0)):
-    for column, ka in enumerate((0.0, 0.2, 0.4, 0.6)):
-        red = Material(ambient=ka, diffuse=0.5, specular=0.4, color=(0.9, 0.12, 0.1))
-        lamp = Light(direction=(-0.7, 0.8, 0.9), intensity=0.8)
-        view = View(direction=(0, 0, 1))
-        lit = vizlight.illuminate(
-            ball, Scene(lights=lamp, view=view, ambient_intensity=around, material=red)
-        )
-        balls.append(lit.translate((2.2 * column, 2.2 * row, 0)))
-camera = render.camera_on(balls.bounds, (0, 0, 1), parallel=True, aspect=1, zoom=1.3)
+ball = pv.Sphere(radius=1, theta_resolution=120, phi_resolution=120)
+lamp, view = Light(direction=(-0.7, 0.8, 0.9), intensity=0.8), View(direction=(0, 0, 1))
+balls, shares = pv.MultiBlock(), (0.0, 0.2, 0.4, 0.6)
+around = (1.0, 0.6, 0.3)
+for row, intensity in enumerate(around):
+    for column, ka in enumerate(shares):
+        red = Material(ambient=ka, diffuse=0.5, specular=0.4, color=(0.95, 0.2, 0.14))
+        scene = Scene(lights=lamp, view=view, ambient_intensity=intensity, material=red)
+        balls.append(vizlight.illuminate(ball, scene).translate((2.3 * column, -2.3 * row, 0)))
+camera = render.camera_on((-3, 8.2, -6.2, 2.2, -1, 1), (0, 0, 1), parallel=True, zoom=1.42)
 plotter = render.make_plotter(
-    render.Panel(balls, "rgb"), camera=camera, size=(800, 800), background="#203040"
+    render.Panel(balls, "rgb"), camera=camera, size=(1250, 1000), background=dark
 )
+letters = {"text_color": "white", "font_size": 20, "shape": None, "show_points": False}
+places = [(-2.9, -2.3 * row, 1) for row in range(3)] + [(2.3 * i - 0.35, 1.35, 1) for i in range(4)]
+names = [f"Ia = {value}" for value in around] + [f"ka = {value}" for value in shares]
+plotter.add_point_labels(places, names, always_visible=True, **letters)
 plotter.show()
-
-# %%
-# A lamp of intensity 1 at a distance. Its light is at most 1 by ``attenuation=``, which the
-# formula ``min(1, 1 / d^2)`` of the lecture means; ``Light.unclamped`` is ``1 / d^2`` itself.
-
-d = np.geomspace(0.1, 10, 200)
-lamps = {
-    "Light.unclamped": Light.unclamped(position=(0, 0, 0)),
-    "attenuation=(0, 0, 1)": Light(position=(0, 0, 0), attenuation=(0, 0, 1)),
-    "attenuation=(0.5, 0.5, 0.5)": Light(position=(0, 0, 0), attenuation=(0.5, 0.5, 0.5)),
-}
-for label, lamp in lamps.items():
-    plt.loglog(d, lamp.intensity * falloff.distance(d, *lamp.attenuation), label=label)
-plt.gca().set(xlabel="distance from the lamp", ylabel="light")
-plt.legend()
-plt.show()

@@ -15,13 +15,13 @@ from vizlight import Block, Frustum, Light, Material, Scene, Sphere, View, rende
 
 far = Light(direction=(0.8, -1, 1.1))
 dull = Scene(lights=far, material=Material(ambient=0.1, diffuse=0.9, specular=0))
-camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.5, -1, 0.6), zoom=1.2)
+camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.5, -1, 0.6), zoom=1.3)
 shiny = Scene(
     lights=far,
     view=View.from_camera(camera),
     material=Material(ambient=0.1, diffuse=0.5, specular=0.4),
 )
-near = dull.replace(lights=Light(position=(1.0, -1.2, 0.6)))
+near = dull.replace(lights=Light(position=(0.9, -1.1, 0.5)))
 
 flange = Frustum((0, 0, -0.5), (0, 0, 0.35), (1, 1))
 neck = Frustum((0, 0, 0), (0, 0, 0.9), (0.4, 0.55))
@@ -38,23 +38,23 @@ shapes = {
     "frustum": (Frustum((0, 0, 0), (0, 0, 1.2), (0.4, 0.9)), dull),
     "block": (Block(size=(1.2, 1.2, 1.2)), dull),
     "machined part": (part, dull),
-    "highlight": (Sphere(), shiny),
-    "near light": (Frustum((0, 0, 0), (0, 0, 1.6), (0.6, 0.6)), near),
+    "sphere with a highlight": (Sphere(), shiny),
+    "cylinder, lamp nearby": (Frustum((0, 0, 0), (0, 0, 1.6), (0.5, 0.5)), near),
 }
 drawn = [vizlight.isoluminance(solid, scene, levels=12) for solid, scene in shapes.values()]
 plotter = render.make_plotter(
     [render.Panel(found["bands"], title=name) for name, found in zip(shapes, drawn, strict=True)],
     camera=camera,
     rows=2,
-    size=(1800, 800),
-    cmap="cividis",
+    size=(1800, 980),
+    cmap="bone",
     bar="luminance",
 )
 for number, found in enumerate(drawn):
     if not found["contours"].n_points:
         continue  # each face of the block is one band
     plotter.subplot(*divmod(number, 4))
-    lines = plotter.add_mesh(found["contours"], color="black", line_width=1)
+    lines = plotter.add_mesh(found["contours"], color="black", line_width=1.5)
     # The lines lie in the bands: shift them slightly toward the viewer.
     lines.mapper.SetResolveCoincidentTopologyToPolygonOffset()
     lines.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-4, -4)

@@ -45,12 +45,12 @@ surface["bend"] = np.linalg.eigh(across @ second @ across)[1][:, :, 2]
 # %%
 # The lines are ribbons of a width in the unit of the mesh, so nearer ones are wider.
 
-camera = render.camera_on(surface.bounds, (1, -0.75, 0.55), zoom=1.5)
+camera = render.camera_on(surface, (1, -0.75, 0.55), aspect=0.95, zoom=0.9)
 scene = Scene(
     lights=[Light(direction=(0.1, -0.75, 1)), Light(direction=(1, 0.2, 0.3), intensity=0.3)],
     view=View.from_camera(camera),
     material=Material(
-        ambient=0.2, diffuse=1.0, specular=0.6, shininess=30, color=(0.95, 0.72, 0.38)
+        ambient=0.2, diffuse=0.8, specular=0.5, shininess=30, color=(0.95, 0.72, 0.38)
     ),
 )
 before = vizlight.illuminate(surface, scene)
@@ -60,13 +60,10 @@ lines = vizlight.streamlines(
 blue = Material(ambient=0.3, diffuse=0.7, specular=0, color=(0.10, 0.17, 0.38))
 after = pv.MultiBlock([vizlight.illuminate(surface, scene.replace(material=blue)), lines])
 
-panels = [render.Panel(before, "rgb"), render.Panel(after, "rgb")]
-options = {"camera": camera, "size": (1400, 700), "line_diameter": 0.042}
-plotter = render.make_plotter(panels, background="black", **options)
-plotter.show()
-
-# %%
-# The same on white paper.
-
-plotter = render.make_plotter(panels, background="white", **options)
+panels = [
+    render.Panel(before, "rgb", "the surface, lit by its normals"),
+    render.Panel(after, "rgb", "its lines of curvature, lit by their directions"),
+]
+look = {"size": (1700, 900), "background": "#14181d", "line_diameter": 0.042}
+plotter = render.make_plotter(panels, camera=camera, **look)
 plotter.show()

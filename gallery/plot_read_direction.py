@@ -20,12 +20,12 @@ lines = streamlines(wind, tangents="wind", spacing=0.06).scale(1.005)
 lic = vtkSurfaceLICMapper(input_data_object=wind, scalar_visibility=False)
 hue, field = presets.direction(), {"tangents": "wind", "exponent": 2}
 
-plotter = pv.Plotter(off_screen=True, shape=(2, 3), window_size=(1500, 1040), border=False)
+plotter = pv.Plotter(off_screen=True, shape=(2, 3), window_size=(1860, 1040), border=False)
 ways = {
     "plain: 42": lambda: None,
     "arrows: 18": lambda: plotter.add_mesh(arrows, color="black"),
     "LIC: 3.4": lambda: plotter.add_actor(pv.Actor(mapper=lic)),
-    "lines: 2.6": lambda: plotter.add_mesh(lines, color="black", line_width=4),
+    "lines: 2.6": lambda: plotter.add_mesh(lines, color="black", line_width=3),
     "white light: 45": lambda: plotter.vizlight.add_mesh(wind, scene=Scene(), **field),
     "light of direction: 4.5": lambda: plotter.vizlight.add_mesh(wind, scene=hue, **field),
 }
@@ -33,7 +33,7 @@ for number, (title, draw) in enumerate(ways.items()):
     plotter.subplot(*divmod(number, 3))
     plotter.add_mesh(wind.scale(0.995), color="lightsteelblue", smooth_shading=True)
     draw()
-    plotter.add_text(title, position="upper_edge", color="black", font_size=12)
-    plotter.camera = render.camera_on(wind.bounds, (0.42, 1, 0.1), zoom=1.48)
+    plotter.add_text(f"{title}°", position="upper_edge", color="black", font_size=12)
+    plotter.camera = render.camera_on(wind.bounds, (0.42, 1, 0.1), zoom=1.46)
 plotter.vizlight.add_key(hue, exponent=2)
 plotter.show()

@@ -5,24 +5,23 @@ Which end of a line is near?
 The fibres of the example of slope, and three coloured lamps close around the eye
 (``vizlight.presets.heading``). Lightness tells how steeply a fibre runs toward you, and hue where
 its near end points on the screen: follow a fibre, and its hue on the disc says which of the two
-ways comes toward you. In white light (left) it is a coin's toss which end is near. The figures
-below are read from the picture at the width of a column in print.
+ways comes toward you. In white light it is a coin's toss which end is near. The figures below are
+read from the picture at the width of a column in print.
 """
 
 import pyvista as pv
 
 import vizlight
-from vizlight import presets, render
+from vizlight import Material, presets, render
 
 fibres = vizlight.load_example("fibre_bundle.vtp")
 
-plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=(1800, 720), border=False)
-plotter.set_background("#2c4358", all_renderers=True)
-for side, scene in enumerate((presets.slope(), presets.heading())):
-    plotter.subplot(0, side)
-    plotter.vizlight.add_mesh(fibres, scene=scene, line_diameter=0.22)
-    plotter.vizlight.add_key(scene)
-    plotter.camera = render.camera_on(fibres.bounds, (0.3, -1, 0.2), aspect=1.25, zoom=1.66)
+scene = presets.heading().replace(material=Material(ambient=0.15, diffuse=0.85, specular=0))
+plotter = pv.Plotter(off_screen=True, window_size=(1500, 680))
+plotter.set_background("#14181d")
+plotter.vizlight.add_mesh(fibres, scene=scene, line_diameter=0.21)
+plotter.vizlight.add_key(scene, question="heading")
+plotter.camera = render.camera_on(fibres, (0.3, -1, 0.2), aspect=1.9, zoom=0.95)
 plotter.enable_anti_aliasing("ssaa")
 plotter.show(auto_close=False)
 
@@ -30,4 +29,4 @@ plotter.show(auto_close=False)
 # What can be read in this light, and in white light from the eye:
 
 for light in (scene, presets.slope()):
-    print(vizlight.legibility(fibres, light, view=plotter.camera, line_diameter=0.22))
+    print(vizlight.legibility(fibres, light, view=plotter.camera, line_diameter=0.21))

@@ -3,13 +3,12 @@ A satin ball, lit in four ways
 ==============================
 
 The four panels of illustration 2 of Banks, *Illumination in Diverse Codimensions*: a sphere with a
-tangent field from north to south, like a ball wound with satin thread. A: curves, each lit as a
-line, around a dark sphere. B: the sphere, lit by its normals. C: lit by the field alone, also where
-light cannot reach. D: lit by the field and conditioned by the normals; its dark side is as dark as
-in B. All use the plain cosine law of the paper (``exponent=1``).
+tangent field from north to south, like a ball wound with satin thread: the highlight runs across
+the threads, around the ball. The field alone lights the ball also where the lamp cannot reach;
+conditioned by the normals, its dark side is as dark as that of the ball. All use the plain cosine
+law of the paper (``exponent=1``).
 """
 
-# sphinx_gallery_thumbnail_number = 1
 import numpy as np
 import pyvista as pv
 
@@ -22,7 +21,7 @@ ball["Normals"] = normals
 ball.point_data.active_normals_name = "Normals"
 ball["satin"] = np.array([0, 0, 1], dtype=np.float32) - normals[:, 2:] * normals
 
-camera = render.camera_on(ball.bounds, (0.2, -1, 0.35), zoom=1.3)
+camera = render.camera_on(ball, (0.2, -1, 0.35), aspect=1, zoom=0.86)
 scene = Scene(
     lights=Light(direction=(1, -1, 0.8)),
     view=View.from_camera(camera),
@@ -35,24 +34,16 @@ panels = vizlight.satin(ball, scene, tangents="satin", seeds=equator, exponent=1
 dark = pv.Sphere(radius=0.497, theta_resolution=120, phi_resolution=120)
 dark["rgb"] = np.full((dark.n_points, 3), 0.02)
 panels["curves"] = pv.MultiBlock([panels["curves"], dark])
-threads = {"background": "#101010", "line_diameter": 0.007}
-
+titles = {
+    "curves": "threads, each lit as a line", "surface": "the ball, lit by its normals",
+    "field": "lit by the threads' direction", "conditioned": "direction, shadowed by the ball",
+}  # fmt: skip
 plotter = render.make_plotter(
-    [render.Panel(panels[name], "rgb") for name in ("curves", "conditioned")],
-    camera=render.camera_on(ball.bounds, (0.2, -1, 0.35), zoom=1.5),
-    size=(1600, 800),
-    **threads,
-)
-plotter.show()
-
-# %%
-# The four panels.
-
-titles = ("A: threads", "B: normals", "C: field", "D: field and normals")
-plotter = render.make_plotter(
-    [render.Panel(panel, "rgb", title) for panel, title in zip(panels, titles, strict=True)],
+    [render.Panel(panels[name], "rgb", title) for name, title in titles.items()],
     camera=camera,
-    size=(1600, 440),
-    **threads,
+    rows=2,
+    size=(1400, 1400),
+    background="#14181d",
+    line_diameter=0.007,
 )
 plotter.show()

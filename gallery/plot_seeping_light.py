@@ -2,9 +2,10 @@
 Light that passes through thin parts
 ====================================
 
-The figure of a dog with the light behind it. Left: with the clamped cosine, what faces the eye is
-dark. Middle and right: with ``t = d / r`` for two depths ``d``, against the length ``r`` of the way
-through the figure to the light: ears and tongue glow as if of wax, and the body stays dark.
+The figure of a dog with a lamp behind it, and a weak one beside. With the clamped cosine, what
+faces the eye has the weak light alone. With ``t = d / r``, for a depth ``d`` against the length
+``r`` of the way through the figure to the lamp, ears and tongue glow as if of wax, and the body
+stays dark. The dog is 1.2 long.
 """
 
 # sphinx_gallery_thumbnail_number = 1
@@ -15,19 +16,24 @@ import vizlight
 from vizlight import Light, Material, Scene, render
 
 dog = vizlight.load_example("dog.vtp").compute_normals(split_vertices=False)
-head = (0.1, 0.5, -0.1, 0.1, 0.47, 0.8)
-camera = render.camera_on(head, (1.0, -0.85, 0.12), aspect=0.75, zoom=1.35)
+head = (0.15, 0.47, -0.1, 0.1, 0.5, 0.81)
+camera = render.camera_on(head, (1.0, -0.85, 0.12), aspect=0.9, zoom=1.3)
+behind = Light(direction=(-0.9, 0.75, 0.35))
+beside = Light(direction=(0.2, -1, 0.9), intensity=0.22)
 panels = []
-for title, depth in (("cosine", 0.0), ("d = 0.006", 0.006), ("d = 0.02", 0.02)):
+for title, depth in (
+    ("cosine: no light passes", 0.0), ("light passes, d = 0.006", 0.006),
+    ("light passes, d = 0.02", 0.02),
+):  # fmt: skip
     scene = Scene(
-        lights=Light(direction=(-0.9, 0.75, 0.35)),
-        material=Material(ambient=0.025, diffuse=1.0, specular=0.0, color=(1.0, 0.5, 0.22)),
+        lights=[behind, beside],
+        material=Material(ambient=0.04, diffuse=0.9, specular=0.0, color=(1.0, 0.5, 0.22)),
     )
     lit = vizlight.relief_shadow(dog, scene, depth=depth, lit=True)
-    lit["rgb"] = np.sqrt(lit["rgb"])
+    lit["rgb"] = lit["rgb"] ** 0.65
     panels.append(render.Panel(lit, "rgb", title))
 
-plotter = render.make_plotter(panels, camera=camera, size=(1800, 800), background="#0c1016")
+plotter = render.make_plotter(panels, camera=camera, size=(1950, 760), background="#14181d")
 plotter.show()
 
 # %%
@@ -36,11 +42,12 @@ plotter.show()
 # them qualitatively alike.
 
 r = np.geomspace(0.002, 1, 200)
-for depth in (0.006, 0.02):
-    plt.semilogx(r, np.minimum(depth / r, 1), label=f"d / r, d = {depth}")
-    plt.semilogx(
-        r, np.exp(-np.log(2) * r / (2 * depth)), "--", label=f"exp(-a r), a = ln 2 / {2 * depth}"
-    )
-plt.gca().set(xlabel="length r inside of the solid", ylabel="light")
-plt.legend()
+figure, axes = plt.subplots(figsize=(8, 5), layout="constrained")
+for depth, color in ((0.006, "#1f6f9f"), (0.02, "#c8641e")):
+    axes.semilogx(r, np.minimum(depth / r, 1), color=color, lw=2.5, label=f"d / r, d = {depth}")
+    scattered = np.exp(-np.log(2) * r / (2 * depth))
+    axes.semilogx(r, scattered, "--", color=color, lw=2, label=f"exp(-a r), a = ln 2 / {2 * depth}")
+axes.set(xlabel="way through the solid r, in units of the dog", ylabel="share of light that passes")
+axes.spines[["top", "right"]].set_visible(False)
+axes.legend(frameon=False)
 plt.show()

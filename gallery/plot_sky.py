@@ -36,32 +36,30 @@ shown = {
     "cortex": (cortex, (-1, 0.25, 0.3)),
     "coral": (coral.compute_normals(auto_orient_normals=True), (1, 0.6, 0.5)),
     "part": (vizlight.to_polydata(part), (-0.4, -1, 1)),
-    "fibres": (vizlight.load_example("fibre_bundle.vtp"), (0.3, -1, 0.2)),
 }
-plotter = pv.Plotter(off_screen=True, shape=(2, 5), window_size=(2500, 900), border=False)
+plotter = pv.Plotter(off_screen=True, shape=(2, 4), window_size=(2200, 1120), border=False)
 plotter.set_background("#14181d", all_renderers=True)
+words = {"position": "upper_edge", "color": "white", "font_size": 11}
 for column, (name, (mesh, toward)) in enumerate(shown.items()):
-    zoom = 1.15 if name == "part" else 1.42
-    camera = render.camera_on(mesh.bounds, toward, aspect=1.1, zoom=zoom)
-    fibres = mesh.n_lines > 0
+    camera = render.camera_on(mesh, toward, aspect=1, zoom=0.86)
     # Points deep in folds see nothing of the sky: a warning says how many.
-    lit = vizlight.sky(mesh, error=0.1 if fibres else 0.03).vizlight.illuminate(
-        presets.heading() if fibres else scene, occlusion="sky"
-    )
+    lit = vizlight.sky(mesh, error=0.03).vizlight.illuminate(scene, occlusion="sky")
     plotter.subplot(0, column)
-    tubes = mesh.tube(radius=0.15) if fibres else mesh
     look = {"split_sharp_edges": True} if name == "part" else {}
     actor = plotter.add_mesh(
-        tubes, color="white", smooth_shading=True, show_scalar_bar=False, **look
+        mesh, color="white", smooth_shading=True, show_scalar_bar=False, **look
     )
     plain = Scene.from_plotter(plotter, actor=actor)
     plotter.enable_ssao(radius=0.1 * mesh.length, bias=0.003 * mesh.length, kernel_size=128)
+    plotter.add_text(f"{name}: PyVista, SSAO", **words)
     plotter.camera = camera
     plotter.subplot(1, column)
-    plotter.vizlight.add_mesh(lit, **({"line_diameter": 0.3} if fibres else {}))
+    plotter.vizlight.add_mesh(lit)
+    plotter.add_text(f"{name}: vizlight, sky", **words)
     plotter.camera = camera
-    lights = {"plain": (mesh, plain), "no sky": (mesh, scene), "sky": (lit, scene)}
-    for what, (own, light) in lights.items() if not fibres else ():
+    for what, (own, light) in {
+        "plain": (mesh, plain), "no sky": (mesh, scene), "sky": (lit, scene),
+    }.items():  # fmt: skip
         found = vizlight.legibility(own, light, view=camera).shape
         print(f"{name}, {what}: {found.median:.1f} degrees, {found.bits:.1f} bits")
 plotter.show()

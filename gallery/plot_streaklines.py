@@ -18,7 +18,7 @@ import pyvista as pv
 import vizlight
 from vizlight import Light, Material, Scene, View, render
 
-times = np.linspace(0, 8, 41)
+times = np.linspace(0, 6.4, 65)  # a streak has at most 64 points
 steps = []
 for time in times:
     step = pv.ImageData(dimensions=(141, 61, 3), spacing=(0.05, 0.05, 0.05), origin=(0, -1.5, 0))
@@ -35,7 +35,7 @@ for time in times:
     steps.append(step)
 
 seeds = np.linspace((0.05, -0.32, 0.05), (0.05, 0.32, 0.05), 26)
-camera = render.camera_on((0.3, 6.7, -1.1, 1.1, 0, 0.1), (0, -0.3, 1), aspect=2.7, zoom=1.9)
+camera = render.camera_on((0.2, 5.0, -1, 1, 0, 0.1), (0, -0.3, 1), aspect=2.7, zoom=2.6)
 scene = Scene(
     lights=Light(direction=(-0.7, 0.6, 0.6)),
     view=View.from_camera(camera),
@@ -46,17 +46,19 @@ frames = vizlight.pathlines(
     model="cylinder", step=0.6,
 )  # fmt: skip
 
-plotter = pv.Plotter(off_screen=True, window_size=(900, 330))
-plotter.background_color = "black"
+plotter = pv.Plotter(off_screen=True, window_size=(700, 266))
+plotter.background_color = "#14181d"
 plotter.enable_anti_aliasing("ssaa")
 plotter.camera = camera
+words = "smoke of a row of points, from new (red) to old (blue)"
+plotter.add_text(words, position="upper_edge", color="white", font_size=8)
 plotter.open_gif(Path(mkdtemp()) / "smoke.gif", fps=12)
-for lines in frames:
+for number, lines in enumerate(frames):
     lines["age"] = lines.field_data["TimeValue"][0] - lines["Time"]
     lit = vizlight.tint(lines, "age", cmap="RdYlBu", clim=(-1, 6))
     plotter.add_mesh(
-        lit, scalars="rgb", rgb=True, lighting=False, line_width=1.6, name="smoke", render=False
+        lit, scalars="rgb", rgb=True, lighting=False, line_width=1.8, name="smoke", render=False
     )
-    if lines.field_data["TimeValue"][0] > 3:  # before, there is little smoke
+    if number > 44:  # before, there is little smoke
         plotter.write_frame()
 plotter.show()

@@ -29,13 +29,13 @@ fibres["torus"] = height.ravel()
 light, eye = (kind(direction=(0.3, -1, 0.6, 0)) for kind in (Light, View))
 scene = Scene(lights=light, view=eye, material=Material(ambient=0.1, diffuse=0.9, specular=0))
 
-plotter = pv.Plotter(off_screen=True, window_size=(360, 340))
-plotter.background_color = "#101a2a"
-plotter.camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), zoom=1.35)
+plotter = pv.Plotter(off_screen=True, window_size=(440, 390))
+plotter.background_color = "#14181d"
+plotter.camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), zoom=1.55)
 plotter.enable_anti_aliasing("ssaa")
 plotter.vizlight.add_key(scene, question="slope", size=0.2)
-plotter.open_gif(mkdtemp() + "/turning.gif", fps=9)
-for angle in np.linspace(0, np.pi, 24, endpoint=False):
+plotter.open_gif(mkdtemp() + "/turning.gif", fps=7)
+for angle in np.linspace(0, np.pi, 18, endpoint=False):
     lit = vizlight.project(fibres, scene=scene, rotation=("xw", angle), distance=1.3)
     lit = vizlight.tint(lit, "torus", cmap=["#74adfe", "#f689b3", "#cba656"])
     plotter.vizlight.add_mesh(lit, line_diameter=0.033, name="fibres", show_scalar_bar=False)

@@ -24,7 +24,7 @@ lines = vizlight.streamlines(air, tangents="wind", spacing=0.05).scale(1.005)
 scene, even = presets.direction(), Scene(material=Material(ambient=1, diffuse=0, specular=0))
 
 plotter = pv.Plotter(off_screen=True, window_size=(1600, 1200))
-plotter.set_background("#12141a")
+plotter.set_background("#14181d")
 plotter.vizlight.add_mesh(air, scene=scene, tangents="wind", exponent=2)
 plotter.vizlight.add_mesh(coast, scene=even, color="white", line_diameter=0.0048)
 plotter.vizlight.add_mesh(lines, scene=even, color="#202028", line_diameter=0.0048)

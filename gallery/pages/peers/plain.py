@@ -97,7 +97,7 @@ def winds():
     return *figures, picture, None
 
 
-def tubes(name, radius, question, figure):
+def tubes(name, radius, question, figure, place):
     """Compare lines with PyVista's tubes as wide, whose light is the mean over their width."""
     names, picture = drawn(name)
     lines = bare(names["fibres"])
@@ -106,7 +106,7 @@ def tubes(name, radius, question, figure):
         lambda plotter: plotter.add_mesh(
             lines.tube(radius=radius), color="tan", smooth_shading=True
         ),
-        (0, 1),
+        place,
     )
     key = Scene.from_plotter(beside, actor=actor)
     of_tubes = read(beside, lines, key, line_diameter=2 * radius, model="cylinder")
@@ -251,11 +251,11 @@ PICTURES = {
     "winds": ("which way on the screen?", "median error, degrees", winds),
     "read_slope": (
         "how steep are fibres?", "rank correlation with lightness",
-        lambda: tubes("read_slope", 0.11, "slope", "spearman"),
+        lambda: tubes("read_slope", 0.1, "slope", "spearman", (1, 0)),
     ),
     "read_heading": (
         "which end is near?", "median error in space, degrees",
-        lambda: tubes("read_heading", 0.11, "heading", "median"),
+        lambda: tubes("read_heading", 0.105, "heading", "median", (0, 0)),
     ),
     "read_shape": ("what is the shape?", "median error of the normal, degrees", cortex),
     "terrain": ("what is the shape?", "median error of the normal, degrees", islands),
