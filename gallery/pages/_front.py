@@ -44,7 +44,7 @@ def write(app):
     for name in LOOKS.keys() - {"earth"}:  # which README alone shows
         look = vizlight.look(_data(name), size=SIZE)
         look.save(folder / f"{name}.jpg")
-        look.save(scenes / f"first_{name}.html")
+        look.save(scenes / f"{name}.html")
     pv.close_all()
     page = scenes / "front.html"
     _divide(page)
