@@ -42,7 +42,8 @@ TABLE = ROOT / "gallery" / "pages" / "claims.csv"
 
 #: Files whose sentences are searched for figures.
 PLACES = (
-    "README.md", "vizlight/**/*.py", "gallery/*.rst", "gallery/plot_*.py", "gallery/pages/**/*.rst",
+    "README.md", "paper.md", "vizlight/**/*.py", "gallery/*.rst", "gallery/plot_*.py",
+    "gallery/pages/**/*.rst",
 )  # fmt: skip
 
 NUMBER = r"(?<![\w.^/*\[(=-])-?\d[\d,]*(?:\.\d+)?(?:e-?\d+)?(?![\w^])"

@@ -1,4 +1,4 @@
-"""The scene and the pictures of the first page: what a look makes of embedded data of six kinds.
+"""The scene and the pictures of the first page: what a look makes of data of seven kinds.
 
 ``python gallery/pages/_front.py`` joins the pictures to that of README, ``gallery/looks.jpg``.
 """
@@ -15,10 +15,10 @@ import pyvista as pv
 from PIL import Image
 
 import vizlight
-from vizlight import Material, Scene, render
+from vizlight import Frustum, Material, Scene, render
 from vizlight.draw import html
 
-#: Names of pictures, and of the data that they show.
+#: Names of pictures, and of the data that they show; the part is a solid.
 LOOKS = {
     "winds": "winds_of_july.vtp",
     "flow": "rotating_disk.vtu",
@@ -26,6 +26,7 @@ LOOKS = {
     "tracts": "fibre_bundle.vtp",
     "brain": "brain.vti",
     "earth": "earth_relief.vti",
+    "part": "",
 }
 SIZE = (600, 400)
 #: The scene: size of its picture, eye, and background, the same on light and on dark pages.
@@ -35,12 +36,17 @@ READY = "addEventListener('vizlight-ready', () => parent.postMessage('vizlight-r
 
 
 def write(app):
-    """Write the pictures."""
+    """Write the pictures and the scenes."""
     folder = Path(app.srcdir) / "guide" / "pictures" / "front"
     folder.mkdir(parents=True, exist_ok=True)
-    _write(folder, SIZE, "jpg")
-    page = Path(app.srcdir) / "_static" / "scenes" / "front.html"
-    page.parent.mkdir(parents=True, exist_ok=True)
+    scenes = Path(app.srcdir) / "_static" / "scenes"
+    scenes.mkdir(parents=True, exist_ok=True)
+    for name in LOOKS.keys() - {"earth"}:  # which README alone shows
+        look = vizlight.look(_data(name), size=SIZE)
+        look.save(folder / f"{name}.jpg")
+        look.save(scenes / f"{name}.html")
+    pv.close_all()
+    page = scenes / "front.html"
     _divide(page)
     text = page.read_text("utf-8")
     still = re.search(r'id="picture"[^>]*base64,([^"]+)', text)[1]
@@ -65,7 +71,7 @@ def _divide(path):
     even = Scene(lights=[], material=Material(ambient=1, diffuse=0, specular=0))
     thin = {"color": "#7d6a52", "line_width": 1.2, "halo": False, "light": "points"}
     plotter.vizlight.add_mesh(coast, scene=even, **thin)
-    plotter.camera = render.camera_on(wind.bounds, EYE, aspect=WIDE[0] / WIDE[1], zoom=1.7)
+    plotter.camera = render.camera_on(wind.bounds, EYE, aspect=WIDE[0] / WIDE[1], zoom=1.62)
     plotter.enable_anti_aliasing("ssaa")
     shown = [
         mesh._replace(frame=1 if i < right else 0 if i < left else None)
@@ -75,21 +81,30 @@ def _divide(path):
     html.write_page(path, shown, plotter, frames=names)
 
 
-def _write(folder, size, suffix):
-    """Write the pictures into a folder."""
-    for name, data in LOOKS.items():
-        vizlight.look(vizlight.load_example(data), size=size).save(folder / f"{name}.{suffix}")
-    pv.close_all()
+def _data(name):
+    """Return the data of a picture."""
+    if LOOKS[name]:
+        return vizlight.load_example(LOOKS[name])
+    plate = Frustum((0, 0, 0.14), (0, 0, 0.28), (1.4, 1.4))
+    solid = plate | Frustum((0, 0, 0.55), (0, 0, 1.1), (0.55, 0.7))
+    bores = [((0, 0, 0), 0.36)]
+    bores += [((1.05 * np.cos(a), 1.05 * np.sin(a), 0), 0.13) for a in np.arange(6) * np.pi / 3]
+    for center, radius in bores:
+        solid -= Frustum(center, (0, 0, 4), (radius, radius))
+    mesh = vizlight.to_polydata(solid)
+    mesh.clear_data()
+    return mesh
 
 
 def _join(path):
-    """Write one picture of all."""
+    """Write one picture of the first six."""
     width, height = SIZE
     sheet = Image.new("RGB", (3 * width, 2 * height))
     with tempfile.TemporaryDirectory() as folder:
-        _write(Path(folder), (900, 600), "png")
-        for i, name in enumerate(LOOKS):
-            with Image.open(Path(folder) / f"{name}.png") as picture:
+        for i, name in enumerate([*LOOKS][:6]):
+            place = Path(folder) / f"{name}.png"
+            vizlight.look(_data(name), size=(900, 600)).save(place)
+            with Image.open(place) as picture:
                 small = picture.convert("RGB").resize(SIZE, Image.Resampling.LANCZOS)
             sheet.paste(small, (i % 3 * width, i // 3 * height))
     sheet.save(path, quality=88)

@@ -77,6 +77,8 @@ html_sidebars = {
     "readers": [],
     "bounds": [],
     "sources": [],
+    "pyvista": [],
+    "data": [],
     "peers": [],
     "timed": [],
     "scaling": [],
