@@ -66,6 +66,7 @@ def check_spelling(seed, path):
     np.testing.assert_allclose(z - z[0, 0], HEIGHTS - HEIGHTS[0, 0], atol=0.11, err_msg=str(data))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(20))
 def test_one_field_in_many_spellings(seed, tmp_path):
     check_spelling(seed, tmp_path / "a.nc")
