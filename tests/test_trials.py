@@ -18,8 +18,15 @@ LINUX = sys.platform.startswith("linux")
 forks = pytest.mark.skipif(not LINUX, reason="only a fork of Linux is safe")
 
 
+def loads():
+    """Remember the process that loads what reads files."""
+    os.environ["LOADED_BY"] = str(os.getpid())
+
+
 def reads(path, how):
     """Return why a file is refused, end the process as a library may, or never end."""
+    if how == "loaded":
+        return "" if os.environ["LOADED_BY"] == str(os.getppid()) else "loaded for it alone"
     if how == "hangs":
         time.sleep(50)
     if how == "leaves":
@@ -43,6 +50,7 @@ def _bare(monkeypatch):
         _trials, "_PROGRAM", _trials._PROGRAM.replace("import vizlight.files; ", "")
     )
     monkeypatch.setattr(_trials, "_helpers", {})
+    monkeypatch.setenv("LOADED_BY", "nobody")
     yield
     _trials._end()
 
@@ -54,12 +62,18 @@ def refusal(request, monkeypatch):
         monkeypatch.setattr(_trials, "_FORKS", False)
     elif not LINUX or threading.active_count() > 1:
         pytest.skip("threads run, as those of a test runner")
-    return lambda how: _trials.refusal(partial(reads, "a.e\udcff", how), Path("a.e\udcff"), 0)
+    path = Path("a.e\udcff")
+    return lambda how: _trials.refusal(loads, partial(reads, str(path), how), path, 0)
 
 
 def test_a_reader_that_ends_well_says_what_it_refuses(refusal):
     assert refusal("reads") == ""
     assert refusal("refuses") == "'a.e\udcff' is damaged"
+
+
+def test_packages_are_loaded_once_for_all_files(refusal):
+    """By the process that is forked for each."""
+    assert refusal("loaded") == ""
 
 
 def test_a_crash_is_a_refusal(refusal, monkeypatch):
@@ -103,22 +117,22 @@ def helper():
 def test_a_helper_without_forks_ends_at_a_file_that_may_spoil_others(helper, monkeypatch):
     alone = _trials._PROGRAM.replace("_trials.serve()", "_trials._FORKS = False; _trials.serve()")
     monkeypatch.setattr(_trials, "_PROGRAM", alone)
-    assert helper.tried((partial(reads, "a", "reads"), 9.0)) == (0, "")
+    assert helper.tried((loads, partial(reads, "a", "reads"), 9.0)) == (0, "")
     first = helper._process
-    assert helper.tried((partial(reads, "a", "refuses"), 9.0)) == (0, "'a' is damaged")
+    assert helper.tried((loads, partial(reads, "a", "refuses"), 9.0)) == (0, "'a' is damaged")
     assert first.wait(timeout=9) == 0
-    code, _ = helper.tried((partial(reads, "a", "hangs"), 0.1))
+    code, _ = helper.tried((loads, partial(reads, "a", "hangs"), 0.1))
     assert "not read within 9 s" in _supervise.unreadable("a", code, 9)
-    code, _ = helper.tried((partial(reads, "a", "ends"), 9.0))
+    code, _ = helper.tried((loads, partial(reads, "a", "ends"), 9.0))
     assert "reader was ended by SIGKILL" in _supervise.unreadable("a", code, 9)
 
 
 def test_a_helper_ends_with_its_parent_or_at_an_interrupt(helper, monkeypatch, tmp_path):
-    assert helper.tried((partial(reads, "a", "reads"), 9.0)) == (0, "")
+    assert helper.tried((loads, partial(reads, "a", "reads"), 9.0)) == (0, "")
     process = helper._process
     process.stdin.close()
     assert process.wait(timeout=9) == 0
-    helper.tried((partial(reads, "a", "reads"), 9.0))
+    helper.tried((loads, partial(reads, "a", "reads"), 9.0))
 
     def interrupt(_file):
         while LINUX and not [*tmp_path.iterdir()]:
@@ -131,21 +145,21 @@ def test_a_helper_ends_with_its_parent_or_at_an_interrupt(helper, monkeypatch, t
         f"import os; os.environ['TMPDIR'] = {str(tmp_path)!r}; {_trials._PROGRAM}",
     )
     helper.end()
-    assert helper.tried((partial(reads, "a", "reads"), 9.0)) == (0, "")
+    assert helper.tried((loads, partial(reads, "a", "reads"), 9.0)) == (0, "")
     with monkeypatch.context() as reading:
         reading.setattr(_trials.pickle, "load", interrupt)
         with pytest.raises(KeyboardInterrupt):
-            helper.tried((partial(reads, "a", "hangs"), 9.0))
+            helper.tried((loads, partial(reads, "a", "hangs"), 9.0))
     assert not [*tmp_path.iterdir()]
     assert helper._process is None
 
 
 def test_a_file_is_read_without_a_trial_where_none_can_be_made(helper, monkeypatch):
-    assert helper.tried((partial(reads, "a", lambda: "no value of a file"), 9.0)) == (0, "")
+    assert helper.tried((loads, partial(reads, "a", lambda: "no value of a file"), 9.0)) == (0, "")
     monkeypatch.setattr(_trials, "_PROGRAM", "raise ImportError")
-    assert helper.tried((partial(reads, "a", "refuses"), 9.0)) == (0, "")
+    assert helper.tried((loads, partial(reads, "a", "refuses"), 9.0)) == (0, "")
     monkeypatch.setattr(_trials.sys, "executable", "/none")
-    assert helper.tried((partial(reads, "a", "refuses"), 9.0)) == (0, "")
+    assert helper.tried((loads, partial(reads, "a", "refuses"), 9.0)) == (0, "")
     monkeypatch.setattr(_trials.sys, "executable", "")
     assert not _trials.are_needed()
 
@@ -156,16 +170,21 @@ def test_an_interrupt_ends_a_fork(monkeypatch):
         raise KeyboardInterrupt
 
     children, fork = [], os.fork
-    monkeypatch.setattr(os, "fork", lambda: children.append(fork()) or children[-1])
+
+    def forked():
+        children.append(fork())
+        signal.setitimer(signal.ITIMER_REAL, 0.1 if children[-1] else 0)
+        return children[-1]
+
+    monkeypatch.setattr(os, "fork", forked)
     replaced = signal.signal(signal.SIGALRM, interrupt)
-    signal.setitimer(signal.ITIMER_REAL, 0.1)
     try:
         with pytest.raises(KeyboardInterrupt):
-            _trials._forked((partial(reads, "a", "hangs"), 30.0))
+            _trials._forked((loads, partial(reads, "a", "hangs"), 30.0))
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, replaced)
     with pytest.raises(ChildProcessError):
         os.waitpid(children[0], os.WNOHANG)
     monkeypatch.setattr(os, "fork", lambda: os.kill(0x7FFFFFF0, 0))
-    assert _trials._forked((partial(reads, "a", "refuses"), 9.0)) == (0, "")
+    assert _trials._forked((loads, partial(reads, "a", "refuses"), 9.0)) == (0, "")

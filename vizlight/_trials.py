@@ -27,8 +27,9 @@ from vtkmodules.vtkCommonCore import vtkSMPTools
 
 from vizlight import _supervise
 
-#: A function that returns why it refuses a file, or "", and the time that it has.
-Request: TypeAlias = tuple[Callable[[], str], float]
+#: A function that loads what reads a file, one that returns why it refuses the file, or "", and the
+#: time that this one has.
+Request: TypeAlias = tuple[Callable[[], None], Callable[[], str], float]
 
 __all__ = ["are_needed", "refusal", "serve"]
 
@@ -60,11 +61,13 @@ def are_needed() -> bool:
     return is_program and not (_is_trial or _supervise.has_parent())
 
 
-def refusal(read: Callable[[], str], path: Path, size: int) -> str:
+def refusal(load: Callable[[], None], read: Callable[[], str], path: Path, size: int) -> str:
     """Return why a file is refused that another process reads first, or "".
 
     Parameters
     ----------
+    load : callable
+        Function that imports the packages of ``read``, once for all files of a process.
     read : callable
         Function that returns why it refuses the file, or "".
     path : pathlib.Path
@@ -78,7 +81,7 @@ def refusal(read: Callable[[], str], path: Path, size: int) -> str:
         Result of ``read``, or a message on how it ended the process.
     """
     limit = _supervise.read_limit(size, SECONDS, SECONDS_PER_MB)
-    request = read, limit
+    request = load, read, limit
     if _FORKS and threading.active_count() == 1:
         code, text = _forked(request)
     else:
@@ -88,6 +91,7 @@ def refusal(read: Callable[[], str], path: Path, size: int) -> str:
 
 def _forked(request: Request) -> tuple[int, str]:
     """Return the exit code of a fork, and its answer."""
+    request[0]()
     parent, (reader, writer) = os.getpid(), os.pipe()
     with os.fdopen(reader, "rb") as said, os.fdopen(writer, "wb") as answer, _scratch() as folder:
         with warnings.catch_warnings():
@@ -135,14 +139,14 @@ def _try(request: Request, parent: int, answer: BinaryIO, folder: str) -> None:
         # The system's timer ends the process also inside a library of C; a crash is no news.
         faulthandler.disable()
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.setitimer(signal.ITIMER_REAL, request[1])
+        signal.setitimer(signal.ITIMER_REAL, request[2])
         _supervise.end_with(parent)
         _supervise.limit_memory()
         _silence()
         tempfile.tempdir = folder or tempfile.tempdir
         if vtkSMPTools.GetBackend() != "Sequential":
             vtkSMPTools.SetBackend("Sequential")  # a fork has no threads of the others
-        answer.write(_READY + request[0]().encode("utf-8", "surrogateescape"))
+        answer.write(_READY + request[1]().encode("utf-8", "surrogateescape"))
         answer.flush()
     finally:
         os._exit(0)
@@ -258,7 +262,7 @@ def _leave(_number: int, _frame: object) -> None:
 
 def _here(request: Request) -> tuple[int, str]:
     """Try a file in this process, which ends with code 1 where the time is over."""
-    read, limit = request
+    _, read, limit = request
     faulthandler.dump_traceback_later(limit, exit=True)
     said = read()
     faulthandler.cancel_dump_traceback_later()

@@ -344,9 +344,9 @@ def _check_before(path: Path, selection: Selection) -> None:
     if _trials.are_needed():
         if path.suffix.lower() in GUARDED and not selection.overlays:
             return
-        foreign_files.load(path)
+        load = functools.partial(foreign_files.load, path)
         tried = functools.partial(_refusal, path, selection)
-        if refusal := _trials.refusal(tried, path, _size(path)):
+        if refusal := _trials.refusal(load, tried, path, _size(path)):
             raise FileError(refusal)
     elif path.suffix.lower() in GRID_PIECES:
         # VTK ends the process where a piece of a grid has an error.

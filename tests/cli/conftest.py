@@ -1,5 +1,7 @@
 """The command line as the tests call it."""
 
+import shutil
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -62,25 +64,30 @@ def flow():
 
 
 @pytest.fixture
-def volume():
+def volume(written):
     """Return the name of the one file of the current folder: a volume."""
-    flow().save("flow.vti")
-    return "flow.vti"
+    return shutil.copy(written / "flow.vti", "flow.vti")
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    """Return a folder, made the current one, with a volume, a terrain and a torus in 4-space."""
-    home = tmp_path / "first"
-    home.mkdir()
-    monkeypatch.chdir(home)
-    flow().save("flow.vti")
+@pytest.fixture(scope="session")
+def written(tmp_path_factory):
+    """Return a folder, which no test works in, with a volume, a terrain and a torus in 4-space."""
+    home = tmp_path_factory.mktemp("files")
+    flow().save(home / "flow.vti")
     terrain = pv.ImageData(dimensions=(20, 16, 1))
     terrain["height"] = 3 * np.sin(terrain.points[:, 0] / 3) * np.cos(terrain.points[:, 1] / 4)
-    terrain.save("terrain.vti")
+    terrain.save(home / "terrain.vti")
     tract = pv.Line((0, 0, 0), (3, 4, 0), resolution=4)
     tract = tract + pv.Line((0, 0, 1), (2, 0, 3), resolution=3)
     tract.cell_data["bundle"] = np.arange(float(tract.n_cells))
-    tract.save("tract.vtp")
-    vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=12)).save("torus.vtp")
+    tract.save(home / "tract.vtp")
+    vizlight.manifold(manifolds.torus(1.5, 0.75, resolution=12)).save(home / "torus.vtp")
+    return home
+
+
+@pytest.fixture
+def folder(written, tmp_path, monkeypatch):
+    """Return a copy of the folder, made the current one."""
+    home = shutil.copytree(written, tmp_path / "first")
+    monkeypatch.chdir(home)
     return home

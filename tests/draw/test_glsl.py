@@ -94,6 +94,7 @@ def uniforms(scene, own, data):
     return values
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("data", [False, True])
 @pytest.mark.parametrize("model", ["phong", "blinn"])
 @pytest.mark.parametrize("kind", KINDS)

@@ -71,11 +71,8 @@ def hostile(text, path):
     ), words  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "number",
-    # A page takes two seconds: the others are those of slow tests.
-    [pytest.param(i, marks=[] if i % 6 == 0 else pytest.mark.slow) for i in range(len(PAYLOADS))],
-)
+@pytest.mark.sampled(6)
+@pytest.mark.parametrize("number", range(len(PAYLOADS)))
 def test_no_text_is_read_as_anything_else(number, opened, tmp_path):
     text = PAYLOADS[number]
     path, words = hostile(text, tmp_path / "page.html")

@@ -29,10 +29,16 @@ ABOVE = vizlight.Light(direction=(0.0, 0.6, 0.8))
 QUICK = vizlight.Bundle(grid=24)
 
 
-def test_the_shares_multiply_each_light_and_the_ambient_term():
+@pytest.fixture(scope="module")
+def skylit():
+    """Return lines whose colour comes by their material, under the sky."""
+    scene = SCENE.replace(material=shiny(color=(1.0, 0.3, 0.2)))
+    return vizlight.illuminate(lines(), scene, bundle=QUICK, occlusion="sky", components=True)
+
+
+def test_the_shares_multiply_each_light_and_the_ambient_term(skylit):
     """Against lighting by one light at a time, without a bundle."""
-    mesh = lines()
-    lit = vizlight.illuminate(mesh, SCENE, bundle=QUICK, occlusion="sky", components=True)
+    mesh, lit = lines(), skylit
     share, open_ = np.asarray(lit["transmittance"]), np.asarray(lit["sky"])
     assert share.shape == (mesh.n_points, 2)
     assert share.min() >= 0
@@ -60,11 +66,8 @@ def test_points_deep_inside_are_darker_and_the_outermost_are_not():
     assert lit["sky"][radius < 0.2].mean() < 0.6 * lit["sky"][radius > 0.8].mean()
 
 
-def test_the_reference_of_a_check_takes_the_shares_too():
-    red = shiny(color=(1.0, 0.3, 0.2))
-    scene = SCENE.replace(material=red)
-    lit = vizlight.illuminate(lines(100), scene, bundle=QUICK, occlusion="sky")
-    report = vizlight.check(lit, sample=60)
+def test_the_reference_of_a_check_takes_the_shares_too(skylit):
+    report = vizlight.check(skylit, sample=60)
     assert report.error < 2e-6
     assert report.runs[0].sample == 60
 

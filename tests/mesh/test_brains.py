@@ -15,6 +15,8 @@ from vizlight.mesh import meaning
 
 nibabel = pytest.importorskip("nibabel")
 
+pytestmark = pytest.mark.usefixtures("without_trial")
+
 BALL = pv.Sphere(theta_resolution=12, phi_resolution=10)
 DEPTH = np.asarray(BALL.points[:, 2] ** 2, dtype=np.float32)
 

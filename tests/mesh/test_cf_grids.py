@@ -7,11 +7,13 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight import _trials, cartography, files
+from vizlight import cartography, files
 from vizlight.mesh import dates, meaning, projections, series
 
 xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
+
+pytestmark = pytest.mark.usefixtures("without_trial")
 
 ROWS, COLUMNS = 8, 12
 HEIGHTS = np.random.default_rng(0).random((ROWS, COLUMNS)).astype(np.float32) * 500
@@ -66,6 +68,7 @@ def check_spelling(seed, path):
     np.testing.assert_allclose(z - z[0, 0], HEIGHTS - HEIGHTS[0, 0], atol=0.11, err_msg=str(data))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(20))
 def test_one_field_in_many_spellings(seed, tmp_path):
     check_spelling(seed, tmp_path / "a.nc")
@@ -615,9 +618,8 @@ def test_a_store_of_zarr(tmp_path):
 
 @pytest.mark.parametrize(("name", "package"), [("a.grib", "cfgrib"), ("a.zarr", "zarr")])
 def test_the_way_to_read_grib_and_zarr(tmp_path, name, package, monkeypatch):
-    monkeypatch.setitem(sys.modules, package, None)
     # Another process would have the package.
-    monkeypatch.setattr(_trials, "are_needed", lambda: False)
+    monkeypatch.setitem(sys.modules, package, None)
     (tmp_path / name).write_bytes(b"GRIB")
     with pytest.raises(
         files.FileError, match=f"are read by {package}: run pip install '{package}'"

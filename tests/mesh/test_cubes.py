@@ -10,6 +10,8 @@ from vizlight.files import FileError
 from vizlight.mesh import meaning
 from vizlight.mesh.cubes import BOHR
 
+pytestmark = pytest.mark.usefixtures("without_trial")
+
 #: Values 0 to 23 of a grid of 2 x 3 x 4 points, the last index fastest.
 VALUES = " ".join(map(str, range(24)))
 

@@ -249,7 +249,9 @@ def test_a_warning_of_a_reader_is_no_second_line(tmp_path):
         ("a.NC", "xarray", r".nc files are read by xarray: .*'vizlight\[formats\]'"),
     ],
 )
+@pytest.mark.usefixtures("without_trial")
 def test_a_package_that_is_missing_is_named(name, module, words, tmp_path, monkeypatch):
+    """Another process would have the package."""
     for loaded in [key for key in sys.modules if key.partition(".")[0] == module]:
         monkeypatch.delitem(sys.modules, loaded)
     monkeypatch.setitem(sys.modules, module, None)

@@ -11,6 +11,8 @@ rasterio = pytest.importorskip("rasterio")
 from rasterio.crs import CRS  # noqa: E402
 from rasterio.transform import Affine  # noqa: E402
 
+pytestmark = pytest.mark.usefixtures("without_trial")
+
 NORTH_UP = Affine(30, 0, 4e5, 0, -20, 5.3e6)
 HEIGHTS = np.add.outer(100.0 * np.arange(20), np.arange(40.0))
 

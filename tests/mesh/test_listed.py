@@ -7,6 +7,8 @@ import vizlight
 from vizlight.looks.recipes.drawing import titled
 from vizlight.mesh import listed, meaning
 
+pytestmark = pytest.mark.usefixtures("without_trial")
+
 xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
 

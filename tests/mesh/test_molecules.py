@@ -6,6 +6,8 @@ import pytest
 import vizlight
 from vizlight.mesh import meaning, molecules
 
+pytestmark = pytest.mark.usefixtures("without_trial")
+
 ATOM = "ATOM  {:5d}  CA  GLY A{:4d}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00           C  \n"
 WATER = "3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n"
 

@@ -8,6 +8,8 @@ import pytest
 import vizlight
 from vizlight.mesh import scene_files
 
+pytestmark = pytest.mark.usefixtures("without_trial")
+
 TETRAHEDRON = """Shape { geometry IndexedFaceSet {
 coord Coordinate { point [0 0 0, 1 0 0, 0 1 0, 0 0 1] }
 coordIndex [0 2 1 -1, 0 1 3 -1, 1 2 3 -1, 0 3 2 -1] } }"""

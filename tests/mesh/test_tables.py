@@ -7,6 +7,8 @@ import pyvista as pv
 import vizlight
 from vizlight.files import FileError
 
+pytestmark = pytest.mark.usefixtures("without_trial")
+
 
 def written(path, text):
     path.write_text(text, encoding="utf-8")

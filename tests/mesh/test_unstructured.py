@@ -7,6 +7,8 @@ import pyvista as pv
 import vizlight
 from vizlight import files
 
+pytestmark = pytest.mark.usefixtures("without_trial")
+
 xr = pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
 

@@ -141,6 +141,7 @@ def test_points_of_a_lit_shadow_count_once():
     assert report.points == lit.n_points
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("levels", [12, 0.02])
 @pytest.mark.parametrize("specular", [0.0, 0.4])
 @pytest.mark.parametrize("what", [Sphere(), Sphere() - Frustum(axis=(0, 0, 4)), pv.Sphere()])
