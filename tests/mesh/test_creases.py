@@ -26,6 +26,26 @@ def test_creases_of_a_box_are_its_edges_and_a_ball_has_none():
     assert not files.creases(twice).n_cells
 
 
+def test_points_are_put_in_order_only_where_some_are_stored_twice(monkeypatch):
+    """Indices of a sort of all points take six times as long as to see that all places differ."""
+    unique, lengths = np.unique, []
+
+    def counted(values, **options):
+        lengths.append(len(values))
+        return unique(values, **options)
+
+    monkeypatch.setattr(np, "unique", counted)
+    block = pv.Box().triangulate().subdivide(3, subfilter="linear")
+    edges = files.creases(block)
+    assert max(lengths, default=0) < block.n_points
+    apart = block.compute_normals(split_vertices=True, feature_angle=30)
+    assert apart.n_points > block.n_points
+    again = files.creases(apart)
+    assert apart.n_points in lengths
+    assert edges.n_cells == again.n_cells == 12 * 8
+    assert {*map(tuple, edges.points)} == {*map(tuple, again.points)}
+
+
 def test_a_strip_with_one_side_has_no_crease_where_its_faces_turn_over():
     turn, across = np.meshgrid(np.arange(60) * np.pi / 30, [-0.3, 0, 0.3], indexing="ij")
     far = 1 + across * np.cos(turn / 2)

@@ -12,7 +12,7 @@ from vizlight.vtk.cells import check_whole, connectivity
 from vizlight.vtk.corners import SHARP, sharp_edges
 from vizlight.vtk.memory import once
 from vizlight.vtk.normals import creases as share_of_creases
-from vizlight.vtk.topology import place_numbers
+from vizlight.vtk.topology import coincident
 
 #: Size of connected edges, as a share of that of the surface, below which they are roughness.
 SHORT = 0.1
@@ -63,14 +63,12 @@ def creases(surface: pv.PolyData, /) -> pv.PolyData:
 
 def _creases(surface: pv.PolyData, *, carried: bool) -> pv.PolyData:
     ids, ends = connectivity(surface.GetPolys())
-    _, first, same = np.unique(
-        place_numbers(surface.points), return_index=True, return_inverse=True
-    )
-    if len(first) < surface.n_points:
+    same = coincident(surface.points)
+    if same is not None:
         # Files with normals store a point once for each side of a crease.
-        ids = same[ids]
-        faces = blocks.cell_array(ids, ends)
-        surface = pv.PolyData(np.asarray(surface.points)[first], faces=faces)
+        kept = same == np.arange(len(same))
+        ids = (np.cumsum(kept) - 1)[same][ids]
+        surface = pv.PolyData(surface.points[kept], faces=blocks.cell_array(ids, ends))
     if not share_of_creases(surface, has_normals=carried):
         return pv.PolyData()
     pairs = sharp_edges(surface.points, ids, ends, SHARP)

@@ -217,7 +217,7 @@ def _nodes(grid: Grid) -> tuple[Array, float]:
     else:
         points = GridPoints(grid)[:]
         # Only the points of a StructuredGrid may have the heights as their z.
-        sides = np.ptp(points, axis=0)
+        sides = [np.ptp(axis) for axis in points.T]
         if sides[2] > LEVEL * np.linalg.norm(sides):
             raise _tilted()
     # Rows that are straight bend by the rounding of their largest coordinate, however near its

@@ -213,23 +213,22 @@ def continued(x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
     )
     # Two more rings on each side, from which no height comes.
     wide = np.pad(np.asarray(z, dtype=np.float64), 3, constant_values=np.nan)
-    rows, columns = len(y), len(x)
-
-    def at(row: int, column: int) -> Array:
-        return wide[2 + row : 2 + row + rows, 2 + column : 2 + column + columns]
-
-    total, count = np.zeros((rows, columns)), np.zeros((rows, columns))
+    heights = wide[2:-2, 2:-2].copy()
+    # The ring and the holes; without holes a small part of all nodes.
+    row, column = np.nonzero(~np.isfinite(heights))
+    total, count = np.zeros((2, len(row)))
     # Straight ways first: corners have diagonals alone.
     for ways in (((0, 1), (0, -1), (1, 0), (-1, 0)), ((1, 1), (1, -1), (-1, 1), (-1, -1))):
         open_nodes = count == 0
-        for row, column in ways:
-            guess = 2 * at(row, column) - at(2 * row, 2 * column)
+        for down, right in ways:
+            near = wide[row + 2 + down, column + 2 + right]
+            guess = 2 * near - wide[row + 2 + 2 * down, column + 2 + 2 * right]
             fits = open_nodes & np.isfinite(guess)
             total[fits] += guess[fits]
             count[fits] += 1
-    here = at(0, 0)
     with np.errstate(invalid="ignore"):
-        return x, y, np.where(np.isfinite(here), here, total / count)
+        heights[row, column] = total / count
+    return x, y, heights
 
 
 def normals(field: Field) -> Array:
