@@ -27,11 +27,12 @@ from vizlight import _check
 from vizlight._questions import QUESTIONS, Question
 from vizlight._types import Array, ColorLike, Foreign, Given, Indices, Keywords, Raw
 from vizlight.draw import backends, dialects, glsl, ground
+from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import is_cloud
-from vizlight.draw.margins import MarginBar
 from vizlight.draw.live import NORMALS, TANGENTS, Fragments, LightAt, Live, items, matrix_of
+from vizlight.draw.margins import MarginBar
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
-from vizlight.draw.strokes import DEPTH
+from vizlight.draw.strokes import DEPTH, line_samples
 from vizlight.files import check_output, replace_file
 from vizlight.filters import relight
 from vizlight.filters.key import annotated
@@ -148,12 +149,16 @@ class Page:
         if not isinstance(surface, pv.PolyData):
             surface, ids = blocks.outer_surface(surface)
         prop = actor.GetProperty()
+        # As drawn in a picture of more pixels, which is shrunk.
+        thicker = (
+            1.0 if live is not None and live.stroke != Stroke() else line_samples(self.renderer)
+        )
         entry: dict[str, object] = {
             "name": shown.name,
             "color": list(prop.GetDiffuseColor()),
             "opacity": prop.GetOpacity(),
-            "lineWidth": prop.GetLineWidth(),
-            "pointSize": prop.GetPointSize(),
+            "lineWidth": prop.GetLineWidth() / thicker,
+            "pointSize": prop.GetPointSize() / min(thicker, 2.0),
             "representation": prop.GetRepresentation(),
             # Faces toward the eye that are left out, or those away from it.
             "culled": int(prop.GetFrontfaceCulling()) - int(prop.GetBackfaceCulling()),
@@ -626,7 +631,7 @@ def _gradient(bar: MarginBar) -> dict[str, object]:
     kept = [
         stop
         for i, stop in enumerate(colors)
-        if not 0 < i < len(colors) - 1 or not bar.colors[i - 1][1] == bar.colors[i + 1][1]
+        if not 0 < i < len(colors) - 1 or bar.colors[i - 1][1] != bar.colors[i + 1][1]
     ]
     return {"title": bar.heading, "colors": kept, "marks": bar.marks}
 

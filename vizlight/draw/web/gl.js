@@ -479,8 +479,11 @@ class Mesh {
     // Faces are moved back by a little, or they would hide parts of the lines on them.
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(2, 2);
-    (given.culled ? gl.enable : gl.disable).call(gl, gl.CULL_FACE);
-    gl.cullFace(given.culled > 0 ? gl.FRONT : gl.BACK);
+    const sides = (side) => {
+      (side ? gl.enable : gl.disable).call(gl, gl.CULL_FACE);
+      gl.cullFace(side > 0 ? gl.FRONT : gl.BACK);
+    };
+    sides(given.culled);
     if (this.heights) gl.bindTexture(gl.TEXTURE_2D, this.heights);
     // Pixels at the border of a stroke or a ball are covered in part.
     ((this.capsules || given.ball) && given.opacity >= 1 ? gl.enable : gl.disable).call(gl, gl.SAMPLE_ALPHA_TO_COVERAGE);
@@ -489,8 +492,20 @@ class Mesh {
       const wide = (batch.kind === 'points' ? given.pointSize * (given.ball ? numbers.ownNearer : 1) : given.lineWidth) * ratio;
       this.program(given.live ? `${this.data ? 'data ' : ''}${key}` : '', batch.kind === 'strokes').use({ ...all, ownWide: [wide], ownHalo: [wide * (given.halo || 0)], ownDepth: [given.depth || 0], ownDarker: [this.data ? 0 : 0.6] });
       if (sorted && batch.order && batch.count < 3 * MOST_SORTED) batch.sort(view, this.places);
+      if (batch.kind !== 'surface' || given.culled || given.opacity < 1) {
+        batch.draw();
+        return;
+      }
+      // Where a surface turns away both of its sides have one depth: the far one is moved back.
+      sides(-1);
       batch.draw();
+      sides(1);
+      gl.polygonOffset(4, 16);
+      batch.draw();
+      gl.polygonOffset(2, 2);
+      sides(0);
     });
+    sides(0);
     if (!this.edges.length) return;
     this.program('', true, false).use({ ...all, ownWide: [ratio] });
     this.edges.forEach((batch) => batch.draw());

@@ -417,6 +417,8 @@ function build(app) {
   };
   app.watchers.push(show);
   show();
+  // Keys that come later stand over the picture, which stays where it is.
+  if (byId('legend').innerText) byId('stage').style.setProperty('--foot', `${byId('legend').offsetHeight}px`);
   addEventListener('keydown', (e) => {
     if (e.target.closest?.('input[type=text], select, dialog')) return;
     const key = e.key.toLowerCase();
