@@ -318,7 +318,7 @@ def test_pages_show_what_the_picture_shows_without_light(opened, tmp_path):
     balls = pv.PolyData([(-0.6, -0.5, 0.0), (0.2, -0.5, 0.0)])
     style = {"point_size": 60, "render_points_as_spheres": True}
     plotter.add_mesh(balls, color="#80c0c0", **style)
-    sheet = pv.Plane((0.9, -0.5, 0), i_size=0.5, j_size=0.6, i_resolution=2, j_resolution=1)
+    sheet = pv.Plane(center=(0.9, -0.5, 0), i_size=0.5, j_size=0.6, i_resolution=2, j_resolution=1)
     sheet.cell_data["kind"] = [0.0, 1.0]
     plotter.add_mesh(sheet, lighting=False, cmap=["#205080", "#e0a030"], show_scalar_bar=False)
     plotter.view_xy()
@@ -379,4 +379,5 @@ def test_a_map_is_tilted_and_turned_about_its_up(opened, tmp_path):
     away = np.subtract(camera["position"], camera["focal"])
     assert 0.05 < abs(away[2]) / np.linalg.norm(away) < 0.9
     page.keyboard.press("r")
-    np.testing.assert_array_equal(browsers.shot(page), first)
+    # Within the ring of the focus.
+    np.testing.assert_array_equal(browsers.shot(page)[5:-5, 5:-5], first[5:-5, 5:-5])

@@ -879,7 +879,7 @@ def page_text(
     if not split:
         page.add_values(shown)  # for the panel
     page.add_bars(plotter, shown)
-    margin = plotter.vizlight.margin  # type: ignore[attr-defined]
+    margin = plotter.vizlight.margin
     if margin is not None and key:
         title = title or margin.title
         page.bars += [_gradient(bar) for bar in margin.bars]
