@@ -33,6 +33,7 @@ def browser(chromium):
 
 #: Leaves the picture alone in the window.
 BARE = "body { grid-template: minmax(0, 1fr) 0 / minmax(0, 1fr) 0 !important }"
+BARE += " main { --foot: 0px !important }"
 BARE += " #panel, h1, #legend, #triad, #frames, #notice { display: none !important }"
 
 

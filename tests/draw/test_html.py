@@ -365,7 +365,7 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
     plotter.vizlight.add_mesh(torus(), scene=Scene(lights=FAR, material=SHINY), scalars="height")
     plotter.vizlight.add_mesh(winding(), scene=Scene(**HEADLIT), line_width=3, name="coil")
     plotter.add_mesh(pv.Cube())
-    with pytest.warns(UserWarning, match="1 actors without light of vizlight"):
+    with pytest.warns(UserWarning, match="1 actors in the light of PyVista are not"):
         path = plotter.vizlight.export_html(tmp_path / "a.html", title="Both")
     _, _, content = scene_in(path)
     assert [mesh["name"] for mesh in content["meshes"]] == ["mesh 1", "coil"]
@@ -416,7 +416,7 @@ def test_the_bar_of_kinds_has_their_names(tmp_path):
         plotter.vizlight.add_mesh(mesh, scalars="chain", cmap=table, name="one")
         plotter.vizlight.export_html(tmp_path / "a.html")
         (bar,) = scene_in(tmp_path / "a.html")[2]["bars"]
-        assert bar["numbers"] == ([*names.values()] or ["0", "1"])
+        assert [word for _, word in bar["marks"]] == ([*names.values()] or ["0", "1"])
 
 
 @pytest.mark.filterwarnings("ignore:.*could not be lit")

@@ -67,8 +67,10 @@ def test_panel_moves_light_and_material_and_back(opened, tmp_path):
     with page.expect_download() as saved:
         page.get_by_role("button", name="Save picture").click()
     picture = np.array(Image.open(saved.value.path()).convert("RGB"), dtype=np.int16)
-    assert picture.shape[0] == browsers.WIDE["viewport"]["height"]
-    assert np.abs(picture[:, :400] - browsers.shot(page)[:, :400]).mean() < 5
+    # The title stands above it.
+    top = browsers.WIDE["viewport"]["height"] - len(picture)
+    assert 20 < top < 60
+    assert np.abs(picture[:, :400] - browsers.shot(page)[top:, :400]).mean() < 5
     assert seen == [(tmp_path / "ball.html").as_uri()]
 
 
@@ -306,3 +308,76 @@ def test_many_meshes_stand_in_a_closed_list_after_the_sliders(shown):
     assert browsers.shot(page)[60:880, :840].max() > 30
     every.uncheck()
     assert browsers.shot(page)[60:880, :840].max() == 0
+
+
+def test_pages_show_what_the_picture_shows_without_light(opened, tmp_path):
+    """Lines, balls in the lamps of the plotter, and sheets in colours of their own."""
+    plotter = pv.Plotter(off_screen=True, window_size=(300, 250))
+    line = pv.Line((-1, 0.6, 0), (1, 0.6, 0))
+    plotter.add_mesh(line, color="red", line_width=8, lighting=False)
+    balls = pv.PolyData([(-0.6, -0.5, 0.0), (0.2, -0.5, 0.0)])
+    style = {"point_size": 60, "render_points_as_spheres": True}
+    plotter.add_mesh(balls, color="#80c0c0", **style)
+    sheet = pv.Plane(center=(0.9, -0.5, 0), i_size=0.5, j_size=0.6, i_resolution=2, j_resolution=1)
+    sheet.cell_data["kind"] = [0.0, 1.0]
+    plotter.add_mesh(sheet, lighting=False, cmap=["#205080", "#e0a030"], show_scalar_bar=False)
+    plotter.view_xy()
+    plotter.enable_parallel_projection()
+    expected = np.asarray(plotter.screenshot(return_img=True), dtype=np.int16)
+    page, seen = opened(plotter.vizlight.export_html(tmp_path / "plain.html"))
+    assert np.mean(np.abs(browsers.shot(page) - expected).max(axis=2) > 40) < 0.01
+    assert (expected < 250).any(axis=2).mean() > 0.1
+    assert len(seen) == 1
+
+
+def test_pages_have_the_title_and_the_bar_of_the_margin(opened, tmp_path):
+    plotter = pv.Plotter(off_screen=True, window_size=(300, 250))
+    scene = Scene(lights=FAR)
+    plotter.vizlight.add_mesh(pv.Sphere(), scene=scene)
+    colors = pv.LookupTable("viridis", scalar_range=(0, 40))
+    title = "sea_temperature (K); a month"
+    plotter.vizlight.add_key(scene, question="value", cmap=colors, title=title)
+    path = plotter.vizlight.export_html(tmp_path / "bar.html")
+    page, _ = opened(path, bare=False, viewport={"width": 900, "height": 700})
+    assert page.get_by_role("heading", level=1).inner_text() == "Sea temperature; a month"
+    bar = page.locator(".bar")
+    assert bar.locator("figcaption").inner_text() == "K"
+    ticks = bar.locator(".ticks span")
+    left, _, wide, _ = bar.locator(".strip").bounding_box().values()
+    for i, word in enumerate(("0", "10", "20", "30", "40")):
+        assert ticks.nth(i).inner_text() == word
+        x, _, width, _ = ticks.nth(i).bounding_box().values()
+        assert abs(x + width / 2 - (left + wide * i / 4)) < 1
+    # Beside the data, not on them.
+    canvas, legend = page.locator("#canvas").bounding_box(), bar.bounding_box()
+    assert canvas["y"] + canvas["height"] <= legend["y"]
+    path = plotter.vizlight.export_html(tmp_path / "bare.html", key=False)
+    page, _ = opened(path, bare=False)
+    assert not page.locator(".bar").count()
+
+
+def test_a_map_is_tilted_and_turned_about_its_up(opened, tmp_path):
+    sheet = pv.Plane(i_size=4, j_size=3, i_resolution=8, j_resolution=6)
+    camera = vizlight.render.camera_on(sheet, (0, 0, 1), parallel=True)
+    path = vizlight.live_html(
+        sheet, tmp_path / "map.html", scene=Scene(lights=FAR), camera=camera, panel=False
+    )
+    page, _ = opened(path)
+    first = browsers.shot(page)
+    page.mouse.move(150, 125)
+    page.mouse.down()
+    for x, y in ((200, 90), (150, 200), (100, 60), (150, 125)):
+        page.mouse.move(x, y)
+    page.mouse.up()
+    # From above as at first, though some of the loop was beyond the end.
+    assert np.mean(np.abs(browsers.shot(page) - first).max(axis=2) > 60) < 0.02
+    page.mouse.down()
+    page.mouse.move(190, 85, steps=4)
+    page.mouse.up()
+    camera = page.evaluate("vizlight.state.camera")
+    assert camera["up"] == [0, 0, 1]
+    away = np.subtract(camera["position"], camera["focal"])
+    assert 0.05 < abs(away[2]) / np.linalg.norm(away) < 0.9
+    page.keyboard.press("r")
+    # Within the ring of the focus.
+    np.testing.assert_array_equal(browsers.shot(page)[5:-5, 5:-5], first[5:-5, 5:-5])

@@ -19,7 +19,7 @@ from vizlight import _check
 from vizlight._types import ColorLike, Foreign, Given, Keywords, Raw
 from vizlight.draw import keywords
 from vizlight.draw.glsl import Stroke
-from vizlight.draw.html import PageMesh, write_page
+from vizlight.draw.html import PageMesh, drawn_mesh, write_page
 from vizlight.draw.live import Fragments, LightAt, Live, draws_light, items, unfit
 from vizlight.draw.margins import Margin, ink_on
 from vizlight.draw.notebook import guard, guard_exports
@@ -475,7 +475,10 @@ class Component:
         return save_graphic(self._open_plotter(), path, self._live_of, error=error)
 
     def shown(self) -> list[PageMesh]:
-        """Return the visible meshes with live light, for a page with its camera set.
+        """Return the visible meshes of a page, with its camera set.
+
+        Those with live light come first, then points, lines, and what PyVista draws without light.
+        What cannot be picked stands beside the data and has no name.
 
         Returns
         -------
@@ -489,25 +492,30 @@ class Component:
         Warns
         -----
         UserWarning
-            If actors without live light are left out of the page.
+            If surfaces in the light of PyVista are left out of the page.
         """
         plotter = self._open_plotter()
         visible = [actor for actor in items(plotter.renderer.GetActors()) if actor.GetVisibility()]
         lit = [(live, actor) for actor in visible if (live := self._live_of(actor)) is not None]
         visible_meshes = [
-            PageMesh(light.name or f"mesh {i}", light, actor)
+            PageMesh((light.name or f"mesh {i}") if actor.GetPickable() else "", light, actor)
             for i, (light, actor) in enumerate(lit, 1)
-        ]
+        ] + [PageMesh("", None, actor) for actor in visible if self._is_unlit(actor)]
         if not visible_meshes:
             remedy = "add a mesh by plotter.vizlight.add_mesh"
             raise _check.value_error("plotter", "a mesh with live light", "none", remedy)
         if others := len(visible) - len(visible_meshes):
-            _check.warn(f"{others} actors without light of vizlight are not in the page")
+            _check.warn(f"{others} actors in the light of PyVista are not in the page")
         # Until its first picture a plotter of PyVista has no view of its data, and a page takes
         # none.
         if not plotter.camera_set:
             plotter.renderer.view_isometric(render=False)
         return visible_meshes
+
+    @property
+    def margin(self) -> Margin | None:
+        """Title and keys beside the data, None where :meth:`add_key` drew none."""
+        return self._margins.get(_address(self._open_plotter().renderer))
 
     def moving(self) -> list[pv.PolyData]:
         """Return the lines with moving strokes: those of ``streamlines(travel=)`` with widths."""
@@ -589,6 +597,16 @@ class Component:
         # The meter stands above plotters, and draws by them.
         meter = importlib.import_module("vizlight.observers.whole")
         return meter.legibility_of(self._open_plotter(), self._live_of, **options)
+
+    def _is_unlit(self, actor: vtkActor) -> bool:
+        """Return whether PyVista draws points, lines, or a mesh without light."""
+        if self._live_of(actor) is not None or draws_light(actor):
+            return False
+        mesh = drawn_mesh(actor)
+        if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
+            return False
+        flat = mesh.max_cell_dimensionality < 2 and mesh.point_data.active_normals is None
+        return flat or not actor.GetProperty().GetLighting()
 
     def _lit_by_us(self, actor: vtkActor) -> Live:
         expected = "one of plotter.vizlight.add_mesh"

@@ -27,14 +27,17 @@ from vizlight import _check
 from vizlight._questions import QUESTIONS, Question
 from vizlight._types import Array, ColorLike, Foreign, Given, Indices, Keywords, Raw
 from vizlight.draw import backends, dialects, glsl, ground
+from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import is_cloud
 from vizlight.draw.live import NORMALS, TANGENTS, Fragments, LightAt, Live, items, matrix_of
+from vizlight.draw.margins import MarginBar
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
-from vizlight.draw.strokes import DEPTH
+from vizlight.draw.strokes import DEPTH, line_samples
 from vizlight.files import check_output, replace_file
 from vizlight.filters import relight
 from vizlight.filters.key import annotated
 from vizlight.filters.relight import Source
+from vizlight.filters.tint import map_colors
 from vizlight.mesh import blocks, records, strokes
 from vizlight.mesh.casters import EvenField
 from vizlight.mesh.polylines import backdrop
@@ -73,10 +76,10 @@ _CONSTANT = ("vizFurRate", "vizTallest", "vizCue", "vizLeastGain", "vizColorGain
 
 
 class PageMesh(NamedTuple):
-    """A drawn mesh with live light, its name in the panel, and its frame if it has one."""
+    """A drawn mesh, its name in the panel, its live light if it has any, and its frame."""
 
     name: str
-    live: Live
+    live: Live | None
     actor: vtkActor
     frame: int | None = None
 
@@ -107,6 +110,7 @@ class Page:
         maps = {name: pv.LookupTable(name, n_values=256).values for name in MAPS}
         return {
             "background": _hex(self.background),
+            "high": min(self.renderer.GetRenderWindow().GetSize()),
             "camera": {
                 "position": self.moved(camera.GetPosition()),
                 "focal": self.moved(camera.GetFocalPoint()),
@@ -137,35 +141,30 @@ class Page:
         return place
 
     def add(self, shown: PageMesh) -> None:
-        """Add a mesh with its light."""
+        """Add a mesh with its light, or in the colours that PyVista draws it in."""
         live, actor = shown.live, shown.actor
         # A page has surfaces, lines and points; of a volume its outer surface.
-        surface, ids = live.drawn, np.arange(live.drawn.n_points)
+        surface = drawn_mesh(actor) if live is None else live.drawn
+        ids = np.arange(surface.n_points)
         if not isinstance(surface, pv.PolyData):
             surface, ids = blocks.outer_surface(surface)
         prop = actor.GetProperty()
+        # As drawn in a picture of more pixels, which is shrunk.
+        thicker = (
+            1.0 if live is not None and live.stroke != Stroke() else line_samples(self.renderer)
+        )
         entry: dict[str, object] = {
             "name": shown.name,
             "color": list(prop.GetDiffuseColor()),
             "opacity": prop.GetOpacity(),
-            "lineWidth": prop.GetLineWidth(),
-            "pointSize": prop.GetPointSize(),
+            "lineWidth": prop.GetLineWidth() / thicker,
+            "pointSize": prop.GetPointSize() / min(thicker, 2.0),
             "representation": prop.GetRepresentation(),
+            # Faces toward the eye that are left out, or those away from it.
+            "culled": int(prop.GetFrontfaceCulling()) - int(prop.GetBackfaceCulling()),
         }
-        if live.stroke.halo:
-            entry |= {"halo": live.stroke.halo, "depth": DEPTH}
-        if live.stroke.width is not None:
-            shares = live.picked(np.nan_to_num(live.source.mesh.point_data[live.stroke.width]))
-            entry["widths"] = _packed(np.clip(255 * shares, 0, 255)[:, np.newaxis], "u1")
-            if "Normals" in live.source.mesh.point_data:
-                # Of the surface on which the strokes lie, from 0 to 255.
-                leans = live.picked(np.asarray(live.source.mesh["Normals"])) @ np.linalg.inv(
-                    matrix_of(actor.GetMatrix())[:3, :3]
-                )
-                leans /= np.maximum(np.linalg.norm(leans, axis=1, keepdims=True), 1e-30)
-                entry["leans"] = _packed(np.rint(127.5 * (leans + 1)), "u1")
-            if strokes.PHASE in live.source.mesh.point_data:
-                entry["moving"] = _moving(live)
+        if live is not None:
+            entry |= _stroked(live, actor)
         if shown.frame is not None:
             entry["frame"] = shown.frame
         if prop.GetEdgeVisibility():
@@ -179,23 +178,49 @@ class Page:
             cells = np.asarray(getattr(surface, name))
             if len(cells):
                 entry[key] = _packed(cells, "u4")
-        scene = live.scene_of(self.renderer, actor)
+        if live is None:
+            entry |= self._unlit(actor, surface)
+        else:
+            self._light(entry, shown._replace(live=live), live, matrix, ids)
+        self.meshes.append(entry)
+
+    def _light(
+        self, entry: dict[str, object], shown: PageMesh, live: Live, matrix: Array, ids: Indices
+    ) -> None:
+        """Add the light of a mesh to its entry."""
+        scene = live.scene_of(self.renderer, shown.actor)
         if live.scalars is not None:
             # The actor's own colour is PyVista's, which no one sees.
             entry["color"] = list(scene.material.color or WHITE)
         if isinstance(live, Fragments):
-            entry |= self._followed(live, scene, actor, matrix)
+            entry |= self._followed(live, scene, shown.actor, matrix)
         else:
-            entry |= self._fixed(shown, scene, ids)
+            entry |= self._fixed(shown.name, live, shown.actor, scene, ids)
         if live.stroke.outline is not None:
             numbers = cast("dict[str, object]", entry.setdefault("numbers", {}))
             numbers["ownGround"] = list(pv.Color(live.stroke.outline).float_rgb)
-        self.meshes.append(entry)
+
+    def _unlit(self, actor: vtkActor, surface: pv.PolyData) -> dict[str, object]:
+        """Return the colours of a mesh that PyVista draws without light, and the lamps of balls."""
+        mapper, prop = actor.GetMapper(), actor.GetProperty()
+        entry: dict[str, object] = {"live": False}
+        kind, name = surface.active_scalars_info
+        if mapper.GetScalarVisibility() and name is not None:
+            of_cells = kind == pv.FieldAssociation.CELL
+            values = np.asarray((surface.cell_data if of_cells else surface.point_data)[name])
+            colors = map_colors(mapper.GetLookupTable(), values)
+            entry |= {"colors": _packed(colors, "u1"), "ofCells": of_cells}
+        if prop.GetRenderPointsAsSpheres():
+            lit = prop.GetLighting()
+            lamps = self._lamps(lights_of_plotter(self.renderer)) if lit else []
+            entry["ball"] = [prop.GetAmbient(), prop.GetDiffuse()] if lit else [1.0, 0.0]
+            entry["lamps"] = lamps
+        return entry
 
     def add_values(self, every: Sequence[PageMesh]) -> None:
         """Add the arrays by which the page can colour its meshes."""
         rows = [
-            _numbers_of(each.live) if mesh["live"] else {}
+            _numbers_of(each.live) if each.live is not None and mesh["live"] else {}
             for each, mesh in zip(every, self.meshes, strict=True)
         ]
         names = dict.fromkeys(name for of_mesh in rows for name in of_mesh)
@@ -318,9 +343,10 @@ class Page:
         if live.given is not None:
             self.recipe["color"] = f", scalars={live.given!a}"
 
-    def _fixed(self, shown: PageMesh, scene: Scene, ids: Indices) -> dict[str, object]:
+    def _fixed(
+        self, name: str, live: Live, actor: vtkActor, scene: Scene, ids: Indices
+    ) -> dict[str, object]:
         """Return colours with the light that does not depend on the eye."""
-        live, actor = shown.live, shown.actor
         placed = live.source._replace(inputs=live.placed(actor))
         colors = None if live.scalars is None else live.mapped(actor)[ids]
         if live.own_eye:
@@ -333,19 +359,17 @@ class Page:
             # Of ambient light, and of diffuse light from fixed lamps, nothing depends on the eye.
             if scene.lights and (shines or any(light.follows_view for light in scene.lights)):
                 self.notices.append(
-                    f"{shown.name}: the light does not follow the eye{why}; {LEFT_OUT}{said}"
+                    f"{name}: the light does not follow the eye{why}; {LEFT_OUT}{said}"
                 )
         return {"live": False, "colors": _packed(lit, "u1"), "color": [1.0, 1.0, 1.0]}
 
     def _lights_of(self, live: Live, scene: Scene) -> list[dict[str, object]]:
         """Return the lights of a mesh, as the page moves them."""
         pairs = [(light, light.follows_view) for light in scene.lights]
-        if live.scene is None:
-            pairs = [
-                (light, light.follows_view or bool(lamp.LightTypeIsCameraLight()))
-                for lamp in items(self.renderer.GetLights())
-                for light in lights_of([lamp], self.camera)
-            ]
+        return self._lamps(lights_of_plotter(self.renderer) if live.scene is None else pairs)
+
+    def _lamps(self, pairs: Sequence[tuple[Light, bool]]) -> list[dict[str, object]]:
+        """Return lights as the page moves them, from each and whether it follows the eye."""
         matrix = matrix_of(self.camera.GetViewTransformMatrix())
         rows = []
         for light, follows in pairs:
@@ -364,15 +388,50 @@ class Page:
 
     def add_bars(self, plotter: pv.BasePlotter, shown: Sequence[PageMesh]) -> None:
         """Add the scalar bars that the plotter shows."""
-        colored = [mesh.actor for mesh in shown if mesh.live.scalars is not None]
-        tables = [actor.GetMapper().GetLookupTable() for actor in colored]
+        tables = [mesh.actor.GetMapper().GetLookupTable() for mesh in shown]
         for title, bar in plotter.scalar_bars.items():
             table = bar.GetLookupTable()
             if any(table is own_table for own_table in tables):
                 self.bars.append(_bar(title, table))
                 if bar.GetDrawNanAnnotation():
                     grey = _hex(table.GetNanColor())
-                    self.bars.append({"title": NO_DATA_NAME, "colors": [grey, grey], "numbers": []})
+                    self.bars.append({"title": NO_DATA_NAME, "colors": [grey, grey], "marks": []})
+
+
+def drawn_mesh(actor: vtkActor) -> pv.DataSet:
+    """Return the mesh that an actor draws."""
+    mesh: pv.DataSet = pv.wrap(actor.GetMapper().GetInputDataObject(0, 0))
+    return mesh
+
+
+def lights_of_plotter(renderer: vtkRenderer) -> list[tuple[Light, bool]]:
+    """Return the lights of a renderer, and whether each follows the eye."""
+    return [
+        (light, light.follows_view or bool(lamp.LightTypeIsCameraLight()))
+        for lamp in items(renderer.GetLights())
+        for light in lights_of([lamp], renderer.GetActiveCamera())
+    ]
+
+
+def _stroked(live: Live, actor: vtkActor) -> dict[str, object]:
+    """Return the halos of lines, their widths, and how they move."""
+    entry: dict[str, object] = {}
+    if live.stroke.halo:
+        entry |= {"halo": live.stroke.halo, "depth": DEPTH}
+    if live.stroke.width is None:
+        return entry
+    shares = live.picked(np.nan_to_num(live.source.mesh.point_data[live.stroke.width]))
+    entry["widths"] = _packed(np.clip(255 * shares, 0, 255)[:, np.newaxis], "u1")
+    if "Normals" in live.source.mesh.point_data:
+        # Of the surface on which the strokes lie, from 0 to 255.
+        leans = live.picked(np.asarray(live.source.mesh["Normals"])) @ np.linalg.inv(
+            matrix_of(actor.GetMatrix())[:3, :3]
+        )
+        leans /= np.maximum(np.linalg.norm(leans, axis=1, keepdims=True), 1e-30)
+        entry["leans"] = _packed(np.rint(127.5 * (leans + 1)), "u1")
+    if strokes.PHASE in live.source.mesh.point_data:
+        entry["moving"] = _moving(live)
+    return entry
 
 
 def _moving(live: Live) -> dict[str, object]:
@@ -549,7 +608,7 @@ def _bar(title: str, table: pv.LookupTable) -> dict[str, object]:
     count = len(every)
     chosen = every[np.linspace(0, count - 1, min(COLORS, count)).astype(int)]
     colors = ["#" + bytes(color).hex() for color in chosen.astype(np.uint8)]
-    numbers: tuple[float, ...] = (low, middle, high)
+    marks = list(zip((0.0, 0.5, 1.0), numerals((low, middle, high)), strict=True))
     if count <= CLASSES:
         # Classes have each a part of the bar, and kinds, from half below the first, a number.
         ends = [f"{100 * i / count:g}%" for i in range(count + 1)]
@@ -561,8 +620,20 @@ def _bar(title: str, table: pv.LookupTable) -> dict[str, object]:
             kinds = [low + 0.5 + i for i in range(count)]
             names = dict(annotated(table))
             words = [names.get(*each) for each in zip(kinds, numerals(kinds), strict=True)]
-            return {"title": title, "colors": colors, "numbers": words}
-    return {"title": title, "colors": colors, "numbers": numerals(numbers)}
+            marks = [((i + 0.5) / count, word) for i, word in enumerate(words)]
+    return {"title": title, "colors": colors, "marks": marks}
+
+
+def _gradient(bar: MarginBar) -> dict[str, object]:
+    """Return a bar of the margin as the page has it."""
+    colors = [f"#{bytes(color).hex()} {100 * place:.4g}%" for place, color in bar.colors]
+    # Of neighbours of one colour the first and the last are a gradient.
+    kept = [
+        stop
+        for i, stop in enumerate(colors)
+        if not 0 < i < len(colors) - 1 or bar.colors[i - 1][1] != bar.colors[i + 1][1]
+    ]
+    return {"title": bar.heading, "colors": kept, "marks": bar.marks}
 
 
 __all__ = ["live_html"]
@@ -808,15 +879,20 @@ def page_text(
     if not split:
         page.add_values(shown)  # for the panel
     page.add_bars(plotter, shown)
+    margin = plotter.vizlight.margin
+    if margin is not None and key:
+        title = title or margin.title
+        page.bars += [_gradient(bar) for bar in margin.bars]
     if source:
         file, *words = [str(word) for word in source]
         # The vectors that a file has are not lit where the page lights a surface.
         tangents = any(word.startswith("--tangents") for word in words)
-        meshes = [each.live.drawn for each in shown]
+        meshes = [each.live.drawn for each in shown if each.live is not None]
         faces = all(mesh.n_cells and mesh.max_cell_dimensionality > 1 for mesh in meshes)
         plain = faces and not tangents
         page.recipe |= {"file": file, "command": words, "plain": plain}
-    question = _question_of(shown[0].live) if key else None
+    first = next((each.live for each in shown if each.live is not None), None)
+    question = None if first is None or not key else _question_of(first)
     content = page.content() | {
         "name": title or stem, "stem": stem, "panel": panel, "frame": 0,
         "frames": None if frames is None else {"label": frames[0], "values": list(frames[1])},
@@ -852,10 +928,19 @@ def viewer() -> str:
     return f"'use strict';\n(() => {{\n{text}\n}})();\n"
 
 
+#: Words of the script that stay as they are, and signs with the spaces around them.
+_PARTS = re.compile(
+    r"""('(?:\\.|[^'\\])*'|"(?:\\.|[^"\\])*"|`(?:[^`$]|\$(?!{)|\${(?:[^`}]|`[^`]*`)*})*`"""
+    r"""|(?<=\()/(?:\\.|[^/\\\n])+/)"""
+    r"""|[ ]*// [^\n]*|[ ]*(=>|[-+*/]=|[=!]==|&&|\|\||\?\?|[<>=]=|[-+*/%=<>?:,;{}()&|])[ ]*"""
+)
+
+
 def _bare(text: str) -> str:
-    """Return a text without comments of whole lines and without indentation."""
+    """Return a script without comments of whole lines, indentation and spaces around signs."""
     lines = (line.strip() for line in text.splitlines())
-    return "\n".join(line for line in lines if line and not line.startswith("// "))
+    kept = "\n".join(line for line in lines if line and not line.startswith("// "))
+    return _PARTS.sub(lambda part: part[1] or part[2] or "", kept)
 
 
 def _picture(plotter: pv.BasePlotter, shown: Sequence[PageMesh], *, split: bool) -> str:

@@ -6,6 +6,7 @@ import itertools
 import math
 import re
 import textwrap
+from typing import NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -55,6 +56,14 @@ _DPI = 72
 CLOSE = 0.08
 
 
+class MarginBar(NamedTuple):
+    """A bar: its heading, and its colours and words, each with its share of the length."""
+
+    heading: str
+    colors: list[tuple[float, list[int]]]
+    marks: list[tuple[float, str]]
+
+
 class Margin:
     """Title above the data, and keys in a strip beside them, on the ground of the picture.
 
@@ -95,6 +104,21 @@ class Margin:
             self._strip.AddViewProp(part)
         self._pixels = (0, 0)
 
+    @property
+    def title(self) -> str:
+        """Title above the data."""
+        return "; ".join(dict.fromkeys(key.title for key in self._keys if key.title))
+
+    @property
+    def bars(self) -> list[MarginBar]:
+        """Bars of the keys, from left to right."""
+        return [key.bar(alone=self._has_one_title) for key in self._keys if key.is_bar and key.size]
+
+    @property
+    def _has_one_title(self) -> bool:
+        # Kinds without a title, such as elements, are none that another could be taken for.
+        return sum(bool(key.title) or not key.has_kinds for key in self._keys) == 1
+
     def place(self, renderer: vtkRenderer) -> None:
         """Put the title in its place, and the keys, if the size of the picture has changed."""
         left, bottom, right, top = self._whole
@@ -102,7 +126,7 @@ class Margin:
         width, height = int(wide * (right - left)), int(high * (top - bottom))
         if not width or not height:
             return
-        title = "; ".join(dict.fromkeys(key.title for key in self._keys if key.title))
+        title = self.title
         if (width, height) != self._pixels:
             self._pixels = (width, height)
             share_x, share_y = data_share(
@@ -202,9 +226,7 @@ class Margin:
     def _stack(self, room: tuple[float, float], short: int, *, beside: bool) -> None:
         """Stack the keys in the middle of a strip, smaller where they would not fit."""
         axis = 1 if beside else 0
-        # Kinds without a title, such as elements, are none that another could be taken for.
-        alone = sum(bool(key.title) or not key.has_kinds for key in self._keys) == 1
-        scale = 1.0
+        alone, scale = self._has_one_title, 1.0
         for _ in range(4):
             letters, gap = LETTERS * short * scale, MARGIN * short * scale
             wide = room[0] - 2 * gap
@@ -347,13 +369,7 @@ class MarginKey:
         if self._is_title:
             return 1.0, 1.0
         columns = max(int(width / (LETTER * letters)), 6)
-        name, _, more = self._title.partition(";")
-        if kind := LENGTHS.match(name):
-            name = kind[1]
-        # A title of one part stands above the data, and is not said twice.
-        is_said = alone and (not more or not self.is_bar or len(name) > LONGEST)
-        head = self._unit if is_said else f"{name} ({self._unit})" * bool(name)
-        head = "\n".join(filter(None, [head.replace(" ()", ""), self._below]))
+        head = "\n".join(filter(None, [self._head(alone=alone), self._below]))
         longest = max(map(len, head.split()), default=0)
         # Most words are narrower than their number of wide letters: one is not broken for a few.
         columns = max(columns, min(longest, int(1.4 * columns)))
@@ -375,6 +391,31 @@ class MarginKey:
         if self.has_kinds:
             high = min(high, KIND * letters * len(self._marks))
         return box, high + letters + words
+
+    def _head(self, *, alone: bool) -> str:
+        """Return the words above a bar or a disc: its unit, or its name too."""
+        name, _, more = self._title.partition(";")
+        if kind := LENGTHS.match(name):
+            name = kind[1]
+        # A title of one part stands above the data, and is not said twice.
+        is_said = alone and (not more or not self.is_bar or len(name) > LONGEST)
+        head = self._unit if is_said else f"{name} ({self._unit})" * bool(name)
+        return head.replace(" ()", "")
+
+    def bar(self, *, alone: bool) -> MarginBar:
+        """Return the bar from left to right, in full light; see :meth:`fit`."""
+        top = np.flatnonzero(self._flat[:, 1] >= self._flat[:, 1].max() - 1e-9)
+        # At a step two points are at the same place, and the first of them belongs before it.
+        places = (self._flat[top, 0] + 1) / 2
+        order = np.argsort(places, kind="stable")
+        colors = np.asarray(self._mesh[RGB])[top][order].tolist()
+        shown = _thinned([share for share, _ in self._marks], self._zero, MOST_NUMBERS)
+        marks = self._marks
+        if not self.has_kinds:
+            marks = [mark for mark, visible in zip(marks, shown, strict=True) if visible]
+        return MarginBar(
+            self._head(alone=alone), list(zip(places[order].tolist(), colors, strict=True)), marks
+        )  # fmt: skip
 
     def draw(self, middle: tuple[float, float], box: tuple[float, float], letters: float) -> None:
         """Place the key about the middle of its box."""

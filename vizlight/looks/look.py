@@ -258,34 +258,25 @@ class Look:
             key["title"] = wishes.picture["title"]
         if wishes.source:
             key["source"] = list(wishes.source)
-        live = [self._with_bar(layer) for layer in drawing.layers if layer.live]
         camera = drawing.camera
         if "aspect" in camera.keywords:
             # Beside its panel the picture of a page is as high as it is wide.
             keywords = camera.keywords | {"aspect": 1.0}
             camera = Step(camera.name, camera.path, *camera.arguments, **keywords)
+        away = camera.run().distance / drawing.camera.run().distance
+        layers = [_of_page(layer, away) for layer in drawing.layers]
         # The frame of a map is no data.
-        if not any(layer.keywords.get("pickable", True) for layer in live):
+        if not any(layer.keywords.get("pickable", True) for layer in layers):
             shown: Keywords = {"camera": camera, "background": wishes.background, **key}
             return [Step("", "vizlight.live_html", drawing.lit, path, **shown)]
         background = wishes.background
         plotter = Step("plotter", "render.canvas", wishes.size, background=background, draws=False)
         return [
-            *(layer.added(plotter) for layer in live),
+            *(layer.added(plotter) for layer in layers),
+            *(_key_step(plotter, key) for key in self._keys),
             Step("", ".camera=", plotter, Step("", ".copy", camera)),
             Step("", ".vizlight.export_html", plotter, path, **key),
         ]
-
-    def _with_bar(self, layer: Layer) -> Layer:
-        """Return a layer with the bar of its values, which a page draws in place of the key."""
-        values = [key for key in self._titled_keys if key.get("question") == "value"]
-        colors = [layer.keywords.get(name) for name in ("clim", "cmap")]
-        alike = (key for key in values if [key.get("clim"), key.get("cmap")] == colors)
-        key = values[0] if len(values) == 1 else next(alike, None)
-        if key is None or layer.keywords.get("scalars") is None:
-            return layer
-        bar = {"show_scalar_bar": True, "scalar_bar_args": {"title": key["title"]}}
-        return replace(layer, keywords=layer.keywords | bar)
 
     def _picture(self, *, off_screen: bool = True) -> tuple[Step, list[Step]]:
         """Return the step that makes a plotter, and those that fill it."""
@@ -378,6 +369,24 @@ class Look:
         text = base64.b64encode(data.getvalue()).decode()
         image = f'<img alt="{html.escape(self.summary)}" src="data:image/png;base64,{text}"/>'
         return f"{image}<pre>{html.escape(str(self))}</pre>"
+
+
+def _of_page(layer: Layer, away: float) -> Layer:
+    """Return a layer as a page has it.
+
+    Parameters
+    ----------
+    layer : Layer
+    away : float
+        Distance of the page's eye in that of the picture's.
+    """
+    keywords = dict(layer.keywords)
+    if "point_size" in keywords:
+        keywords["point_size"] = round(keywords["point_size"] / away, 1)
+    if "diffuse" not in keywords:
+        return replace(layer, keywords=keywords)
+    # A page has the light of plotters, and none of PyVista's own, which is on the side of the eye.
+    return replace(layer, live=True, keywords=keywords | {"facing": "eye", "pickable": False})
 
 
 def _key_step(plotter: Step, key: dict[str, object]) -> Step:

@@ -21,7 +21,7 @@ class App {
     };
     // Frames with names in place of numbers stand side by side, left and right of a divider.
     this.isSplit = typeof page.frames?.values[0] === 'string';
-    this.first.camera.up = uprightOf(page.camera);
+    Object.assign(this.first.camera, { up: uprightOf(page.camera), above: null });
     this.state = copyOf(this.first);
     this.saved = JSON.stringify(this.state);
     this.canvas = byId('canvas');
@@ -61,6 +61,10 @@ class App {
       }
     });
     if (low[0] > high[0]) { low.fill(0); high.fill(0); }
+    const { up, position, focal } = this.first.camera;
+    const [wide, deep, tall] = minus(high, low);
+    // Of what is lower than wide z is up, also where it is seen along z.
+    if (tall < 0.5 * Math.min(wide, deep) && Math.abs(up[2]) < 1e-5 && unit(minus(position, focal))[2] > 0.999) this.first.camera.above = this.state.camera.above = [0, 0, 1];
     Object.assign(this, { low, high, centre: scaled(plus(low, high), 0.5), radius: norm(minus(high, low)) / 2 || 1 });
   }
 
@@ -246,12 +250,14 @@ class App {
     const view = viewOf(state.camera);
     // The weights are about those of luminance: words over the picture are dark or light by it.
     canvas.parentElement.dataset.tone = dot(shares(this.background), [0.3, 0.6, 0.1]) < 0.5 ? 'dark' : 'light';
+    // Title and keys stand beside the canvas, on the same ground.
+    canvas.parentElement.style.background = this.background;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...shares(this.background), 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const common = { ...this.numbers(view, canvas.width / canvas.height), ownGround: shares(this.background) };
     const draw = (mesh, sorted) => {
-      const { numbers, key } = mesh.given.live ? this.lightOf(mesh, view) : { numbers: {}, key: '' };
+      const { numbers, key } = mesh.given.live ? this.lightOf(mesh, view) : { numbers: this.lightOfBalls(mesh, view), key: '' };
       mesh.draw({ ...common, ...numbers }, key, view, sorted, ratio);
     };
     const layers = (meshes) => {
@@ -344,6 +350,23 @@ class App {
     return { numbers: found, key: `${this.leader.given.free && this.state.free ? 'free ' : ''}0 ${lamps.length}` };
   }
 
+  lightOfBalls({ given: { ball, lamps = [] } }, view) {
+    if (!ball) return {};
+    const numbers = { ownBall: ball, ownNearer: this.nearer };
+    for (let i = 0; i < MOST_OF_BALLS; i += 1) {
+      numbers[`ownWays[${i}]`] = lamps[i] ? this.seen(lamps[i], view) : [0, 0, 0];
+      numbers[`ownGlows[${i}]`] = lamps[i] ? scaled(lamps[i].color, lamps[i].intensity) : [0, 0, 0];
+    }
+    return numbers;
+  }
+
+  // Size in the window of what had a size in the picture, in its pixels.
+  get nearer() {
+    const { state: { camera }, first, page, canvas } = this;
+    const high = (c) => (c.parallel ? c.scale : norm(minus(c.position, c.focal)) * Math.tan((c.angle * Math.PI) / 360));
+    return (high(first.camera) / high(camera)) * (Math.min(canvas.clientWidth, canvas.clientHeight) / page.high);
+  }
+
   // Direction from the centre to a lamp, in the coordinates of the eye; and a lamp put there.
   seen(l, view) {
     if (!l.position) return unit(l.eye ? l.value : rotate(view, l.value));
@@ -382,10 +405,18 @@ class App {
   // About the axis that is up and stays so, as far as its ends: who comes back finds the first view.
   orbit(dx, dy) {
     const { camera } = this.state;
+    let away = minus(camera.position, camera.focal);
+    // A map that is seen from above stands upright once it is tilted.
+    if (camera.above) {
+      away = plus(away, camera.up, -0.011 * norm(away));
+      Object.assign(camera, { up: camera.above, above: null });
+    }
     const up = unit(camera.up);
-    const away = minus(camera.position, camera.focal);
     const angle = Math.acos(dot(up, unit(away)));
-    const raised = Math.max(0.01, Math.min(Math.PI - 0.01, angle - dy)) - angle;
+    // Beyond the ends nothing turns until the pointer is back.
+    const wanted = angle - dy + (this.beyond || 0);
+    const raised = Math.max(0.01, Math.min(Math.PI - 0.01, wanted)) - angle;
+    this.beyond = wanted - angle - raised;
     camera.position = plus(camera.focal, spun(spun(away, unit(cross(up, away)), raised), up, -dx));
     this.move();
   }
@@ -415,7 +446,7 @@ class App {
     const camera = copyOf(this.first.camera);
     if (direction) {
       const away = norm(minus(camera.position, camera.focal));
-      Object.assign(camera, { focal: this.centre, position: plus(this.centre, direction, away), up });
+      Object.assign(camera, { focal: this.centre, position: plus(this.centre, direction, away), up, above: direction[2] ? [0, 0, 1] : null });
     }
     this.change({ camera });
   }
@@ -458,6 +489,7 @@ function steer(app) {
   };
   canvas.onpointerup = (e) => {
     held.delete(e.pointerId);
+    app.beyond = 0;
     app.change({});
   };
   canvas.onpointercancel = canvas.onpointerup;

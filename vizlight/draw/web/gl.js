@@ -140,6 +140,12 @@ const STROKE = `
   vec2 side = length(way) > 1e-6 ? normalize(vec2(-way.y, way.x)) : vec2(0.0, 1.0);
   gl_Position.xy += (float(gl_VertexID % 2) * 2.0 - 1.0) * side * ownWide / ownSize * gl_Position.w;
   if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
+// Depths of what is nearer to the eye: half of a pixel at this depth, and the change of depths in clip space.
+const NEARER = `
+  #define ROW(m, r) vec3(m[0][r], m[1][r], m[2][r])
+  float slope = -length(ROW(MCPCMatrix, 2)) / length(ROW(MCVCMatrix, 2));
+  float focus = float(ROW(MCPCMatrix, 3) != vec3(0.0));
+  float pixel = gl_Position.w * length(ROW(MCVCMatrix, 1)) / length(ROW(MCPCMatrix, 1)) / ownSize.y;`;
 // A stroke with a halo, or with widths at its points, is a capsule: places and sizes are in pixels, times
 // the w of its corner, so that what is interpolated is linear on the screen. Depths are of what is nearer
 // to the eye by the width of the line, and of the border of its halo, which is behind it. Ends go on along
@@ -156,10 +162,8 @@ const CAPSULE = `
   ownHalves = w * halves;
   gl_Position.xy += (far * way + flank * reach * vec2(-way.y, way.x)) * 2.0 / ownSize * w;
   gl_Position.z += far / max(size, reach) * (b.z / b.w - a.z / a.w) * w;
-  #define ROW(m, r) vec3(m[0][r], m[1][r], m[2][r])
-  float slope = -length(ROW(MCPCMatrix, 2)) / length(ROW(MCVCMatrix, 2));
-  float focus = float(ROW(MCPCMatrix, 3) != vec3(0.0));
-  float nearer = 2.0 * ownWide * w * length(ROW(MCVCMatrix, 1)) / length(ROW(MCPCMatrix, 1)) / ownSize.y;
+  ${NEARER}
+  float nearer = 2.0 * ownWide * pixel;
   vec2 moved = vec2(min(nearer, focus > 0.0 ? 0.5 * w : nearer), -ownDepth * nearer);
   ownDeep = 0.5 * w * ((gl_Position.z + slope * moved) / (w - focus * moved) - gl_Position.z / w);
   if (ownGap > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
@@ -176,7 +180,7 @@ const CAPSULE_SHAPE = `
   float border = 0.5 * fwidth(away);
   // Where the width changes fast, as in the head of an arrow, ends are straight.
   bool steep = abs(halves.x - halves.y) > 0.2 * at.z && (at.y < 0.0 || at.y > at.z);
-  if (away >= max(ownHalo, border) || steep) discard;
+  if (away >= max(ownHalo, 0.0) + border || steep) discard;
   float near = deep.x * (1.0 - 0.75 * clamp(0.5 + 0.5 * away / border, 0.0, 1.0));
   gl_FragDepth = clamp(gl_FragCoord.z + near, 1e-3, 1.0) + clamp((away - border) / max(ownHalo, 1e-3), 0.0, 1.0) * (deep.y - near);`;
 const CAPSULE_GROUND = `
@@ -187,6 +191,7 @@ const CAPSULE_GROUND = `
     float pale = ground < 0.5 ? 0.0 : clamp(1.0 - (ground - dot(ownOut.rgb, luma)) / 0.4, 0.0, 1.0);
     ownOut.rgb *= 1.0 - ownDarker * pale * smoothstep(-2.5, -0.5, away);
     ownOut.rgb = mix(ownOut.rgb, ownGround, smoothstep(-border, border, away));
+    ownOut.a *= 1.0 - smoothstep(-border, border, away - ownHalo);
   } else ownOut.a *= 1.0 - smoothstep(-border, border, away);
 }`;
 const FRAGMENT = `#version 300 es
@@ -209,6 +214,25 @@ const UNLIT = [
   ['Vertex', '//VTK::Normal::Impl', 'vizPVSOutput = (MCVCMatrix * vertexMC).xyz;'],
   ['Fragment', '//VTK::Normal::Dec', 'varying vec3 vizPVSOutput;'],
   ['Fragment', '//VTK::Light::Impl', 'ownOut = vec4(diffuseColor, opacity);'],
+];
+// Points that stand for balls have the light of all lamps, and depths.
+const MOST_OF_BALLS = 8;
+const BALLS = [
+  [...UNLIT[0].slice(0, 2), `${UNLIT[0][2]} flat out float ownNear;`],
+  UNLIT[1],
+  ['Vertex', '//STROKE', `
+  ${NEARER}
+  float radius = gl_PointSize * pixel;
+  ownNear = 0.5 * ((gl_Position.z + slope * radius) / (gl_Position.w - focus * min(radius, 0.5 * gl_Position.w)) - gl_Position.z / gl_Position.w);`],
+  ['Fragment', '//VTK::Normal::Dec', `varying vec3 vizPVSOutput; flat in float ownNear; uniform vec3 ownWays[${MOST_OF_BALLS}]; uniform vec3 ownGlows[${MOST_OF_BALLS}]; uniform vec2 ownBall; uniform float ownWide;`],
+  ['Fragment', '//VTK::Light::Impl', `
+  vec2 at = gl_PointCoord * 2.0 - 1.0; float size = length(at);
+  if (size > 1.0) discard;
+  vec3 normal = vec3(at.x, -at.y, sqrt(1.0 - size * size));
+  vec3 lit = vec3(ownBall.x);
+  for (int i = 0; i < ${MOST_OF_BALLS}; i++) lit += ownBall.y * max(0.0, dot(ownWays[i], normal)) * ownGlows[i];
+  gl_FragDepth = gl_FragCoord.z + ownNear * normal.z;
+  ownOut = vec4(diffuseColor * min(lit, vec3(1.0)), opacity * min(1.0, 0.5 * ownWide * (1.0 - size) + 0.3));`],
 ];
 const SLOTS = { ownPlace: 0, ownColor: 2, vizNormalMC: 4, vizTangentMC: 6, ownGap: 8, ownShare: 9, ownLean: 11 };
 
@@ -233,6 +257,8 @@ class Program {
     source.Vertex = source.Vertex.replace('//STROKE', () => (capsules ? CAPSULE : strokes ? STROKE : ''));
     if (capsules) source.Fragment = source.Fragment.replace('void main() {', () => `${CAPSULE_FRAGMENT}\nvoid main() {${CAPSULE_SHAPE}`).replace(/}\s*$/, () => CAPSULE_GROUND);
     if (more) source.Vertex = source.Vertex.replace('void main() {', more);
+    // At the border of a surface, light is of the part of a pixel that is covered, not of its middle beyond.
+    if (!strokes) ['Vertex', 'Fragment'].forEach((stage) => { source[stage] = source[stage].replace(/varying (?=\w+ viz)/g, 'centroid varying '); });
     this.gl = gl;
     this.program = gl.createProgram();
     ['Vertex', 'Fragment'].forEach((stage) => {
@@ -440,7 +466,7 @@ class Mesh {
 
   program(key, strokes, capsules = strokes && this.capsules) {
     const name = `${key}${strokes}${capsules}`;
-    const text = key === '' ? UNLIT : this.texts[this.given.texts[key]];
+    const text = key === '' ? (this.given.ball && !strokes ? BALLS : UNLIT) : this.texts[this.given.texts[key]];
     if (!text) throw new Error(`no light for ${key}`);
     if (!this.programs.has(name)) this.programs.set(name, new Program(this.gl, text, strokes, capsules));
     return this.programs.get(name);
@@ -450,19 +476,36 @@ class Mesh {
     const { given } = this;
     const sizes = { vizNormalMCSize: [given.normals?.scale || 1], vizTangentMCSize: [given.tangents?.scale || 1] };
     const { gl } = this;
-    // Faces are moved back by a little, or they would hide parts of the edges on them.
-    (this.edges.length ? gl.enable : gl.disable).call(gl, gl.POLYGON_OFFSET_FILL);
-    gl.polygonOffset(1, 1);
+    // Faces are moved back by a little, or they would hide parts of the lines on them.
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(2, 2);
+    const sides = (side) => {
+      (side ? gl.enable : gl.disable).call(gl, gl.CULL_FACE);
+      gl.cullFace(side > 0 ? gl.FRONT : gl.BACK);
+    };
+    sides(given.culled);
     if (this.heights) gl.bindTexture(gl.TEXTURE_2D, this.heights);
-    // Without a halo, pixels at the border of a stroke are covered in part.
-    (this.capsules && !given.halo && given.opacity >= 1 ? gl.enable : gl.disable).call(gl, gl.SAMPLE_ALPHA_TO_COVERAGE);
+    // Pixels at the border of a stroke or a ball are covered in part.
+    ((this.capsules || given.ball) && given.opacity >= 1 ? gl.enable : gl.disable).call(gl, gl.SAMPLE_ALPHA_TO_COVERAGE);
     const all = { ...numbers, ...given.numbers, ...sizes, ownOpacity: [given.opacity] };
     this.batches.forEach((batch) => {
-      const wide = (batch.kind === 'points' ? given.pointSize : given.lineWidth) * ratio;
+      const wide = (batch.kind === 'points' ? given.pointSize * (given.ball ? numbers.ownNearer : 1) : given.lineWidth) * ratio;
       this.program(given.live ? `${this.data ? 'data ' : ''}${key}` : '', batch.kind === 'strokes').use({ ...all, ownWide: [wide], ownHalo: [wide * (given.halo || 0)], ownDepth: [given.depth || 0], ownDarker: [this.data ? 0 : 0.6] });
       if (sorted && batch.order && batch.count < 3 * MOST_SORTED) batch.sort(view, this.places);
+      if (batch.kind !== 'surface' || given.culled || given.opacity < 1) {
+        batch.draw();
+        return;
+      }
+      // Where a surface turns away both of its sides have one depth: the far one is moved back.
+      sides(-1);
       batch.draw();
+      sides(1);
+      gl.polygonOffset(4, 16);
+      batch.draw();
+      gl.polygonOffset(2, 2);
+      sides(0);
     });
+    sides(0);
     if (!this.edges.length) return;
     this.program('', true, false).use({ ...all, ownWide: [ratio] });
     this.edges.forEach((batch) => batch.draw());

@@ -170,7 +170,9 @@ function lightControls(app) {
     own({});
   });
   const title = make('b');
-  const set = choice('Meshes that the lamps light', app.first.sets.map((_, i) => [i, `Lamps ${i + 1}`]), () => app.set, (i) => {
+  // What stands beside the data has lamps that no one moves.
+  const sets = app.first.sets.map((_, i) => i).filter((i) => app.meshes.some((mesh) => mesh.name && mesh.given.lights === i));
+  const set = choice('Meshes that the lamps light', sets.map((i) => [i, `Lamps ${i + 1}`]), () => app.set, (i) => {
     Object.assign(app, { set: i, lamp: 0 });
     app.change({});
   });
@@ -183,7 +185,7 @@ function lightControls(app) {
     less.disabled = !app.lamps.length;
     [pad, power, fixed, set].forEach((part) => part.show());
   };
-  return { row: section('Light', true, ...(app.first.sets.length > 1 ? [set.row] : []), make('div', { className: 'lamps' }, pad.row, beside), power.row, line('Turns with', fixed.row)), show };
+  return { row: section('Light', true, ...(sets.length > 1 ? [set.row] : []), make('div', { className: 'lamps' }, pad.row, beside), power.row, line('Turns with', fixed.row)), show };
 }
 
 function materialControls(app) {
@@ -230,7 +232,7 @@ function colorControls(app) {
 const FEW = 6;
 
 function meshControls(app) {
-  const names = [...new Set(app.meshes.filter((mesh) => mesh.given.frame === undefined).map((mesh) => mesh.name))];
+  const names = [...new Set(app.meshes.filter((mesh) => mesh.name && mesh.given.frame === undefined).map((mesh) => mesh.name))];
   if (names.length < 2) return null;
   const hide = (hidden) => app.change({ hidden });
   const boxes = names.map((name) => make('input', { type: 'checkbox', onchange: (e) => hide(e.target.checked ? app.state.hidden.filter((n) => n !== name) : [...app.state.hidden, name]) }));
@@ -272,10 +274,15 @@ function viewControls(app) {
 }
 
 // ---- over the picture: key, colour bars, axes, frames
-function bar(title, background, numbers) {
+function bar(title, background, marks) {
   const strip = make('div', { className: 'strip' });
   strip.style.background = background;
-  return make('figure', { className: 'bar' }, make('figcaption', { textContent: title }), strip, make('div', { className: 'ticks' }, ...numbers.map(span)));
+  const ticks = marks.map(([share, word]) => {
+    const tick = span(word);
+    tick.style.left = `${100 * share}%`;
+    return tick;
+  });
+  return make('figure', { className: 'bar' }, make('figcaption', { textContent: title }), strip, make('div', { className: 'ticks' }, ...ticks));
 }
 
 function legend(app) {
@@ -284,7 +291,7 @@ function legend(app) {
   const key = make('figure', { className: 'key' }, make('canvas', { 'data-ball': 'key', role: 'img' }), words);
   const bars = make('div', { className: 'bars' });
   byId('legend').append(key, bars);
-  const own = page.bars.map(({ title, colors, numbers }) => bar(title, `linear-gradient(to right, ${colors.join(', ')})`, numbers));
+  const own = page.bars.map(({ title, colors, marks }) => bar(title, `linear-gradient(to right, ${colors.join(', ')})`, marks));
   return () => {
     const { look, color, cmap, clim } = app.state;
     key.hidden = !app.leader || app.leader.data || !(page.looks[look] || (page.key && look === '') || look === '*');
@@ -294,7 +301,7 @@ function legend(app) {
     key.firstChild.setAttribute('aria-label', `Key: ${words.textContent}`);
     if (page.arrays[color]) {
       const [low, high] = clim || page.arrays[color];
-      bars.replaceChildren(bar(color, gradient(app.tables[cmap]), [low, (low + high) / 2, high].map((x) => short(x))));
+      bars.replaceChildren(bar(color, gradient(app.tables[cmap]), [0, 0.5, 1].map((at) => [at, short(low + at * (high - low))])));
     } else bars.replaceChildren(...(color === '-' ? [] : own));
   };
 }
@@ -410,6 +417,8 @@ function build(app) {
   };
   app.watchers.push(show);
   show();
+  // Keys that come later stand over the picture, which stays where it is.
+  if (byId('legend').innerText) byId('stage').style.setProperty('--foot', `${byId('legend').offsetHeight}px`);
   addEventListener('keydown', (e) => {
     if (e.target.closest?.('input[type=text], select, dialog')) return;
     const key = e.key.toLowerCase();
