@@ -278,7 +278,7 @@ OWN = {
     "montages.side_by_side": {"volume": block, "name": "v"},
     "molecules.atoms_in": {"volume": orbital},
     "stresses.with_von_mises": {"mesh": strained, "name": "S"},
-    "both_sides.both_sides": {"surface": ball, "names": ("a", "b")},
+    "several_views.several_views": {"mesh": ball, "views": (UP, (0, -1, 0)), "names": ("a", "b")},
     "box_axes.box_axes": {"size": 10.0},
     "box_axes.captions": {"meshes": lambda: pv.MultiBlock({"a": ball()}), "size": 10.0},
     "map_frames.frame": {"mesh": europe, "letters": 1.5},

@@ -132,6 +132,9 @@ def test_a_colour_is_seen_in_plain_light_and_a_view_has_a_name(done):
     assert "presets" not in script
     assert "color='tan'" in script.replace('"', "'")
     assert "camera_on(data, (0.0, -1.0, 0.0)" in script
+    several = done("light", "part.stl", "-o", "x.png", "--view", "front,side,top", "--script")
+    assert "render.several_views(" in several
+    assert "camera_on(data" not in several
     hues = done("light", "part.stl", "-o", "x.png", "--color", "tan", "--for", "shape", "--script")
     assert "vizlight.presets.shape(" in hues
 

@@ -117,8 +117,8 @@ def test_captions_stand_around_blocks_and_the_bar_is_as_long_as_it_says():
 
 def test_captions_need_blocks_and_two_ends_for_each():
     pair, camera = pv.MultiBlock([pv.Box(), pv.Box()]), camera_on(BOX)
-    with pytest.raises(TypeError, match="meshes: expected a MultiBlock"):
-        module.captions(pv.Box(), camera, HEIGHT, size=SIZE)
+    with pytest.raises(TypeError, match="meshes: expected a PyVista mesh"):
+        module.captions(np.zeros(3), camera, HEIGHT, size=SIZE)
     with pytest.raises(ValueError, match="ends: expected two words for each of the 2 blocks"):
         module.captions(pair, camera, HEIGHT, size=SIZE, ends=[("a", "p")])
 
@@ -138,3 +138,18 @@ def test_axes_have_the_names_that_are_given():
     named = box_axes(pv.Box(), camera, HEIGHT, size=SIZE, names=["x (mm)", "y", "z"])
     # A parenthesis has no place in the usual names.
     assert named.n_cells > usual.n_cells
+
+
+def test_a_bar_alone_stands_below_a_mesh_and_below_words_that_leave_it_no_room():
+    box = pv.Box((0, 170, 0, 60, 0, 110))
+    camera = camera_on(box, (0, -1, 0), parallel=True)
+    bar = module.captions(pv.MultiBlock([box]), camera, HEIGHT, size=SIZE, unit="mm", named=False)
+    assert np.array_equal(
+        bar.points, module.captions(box, camera, HEIGHT, size=SIZE, unit="mm").points
+    )
+    assert bar.bounds[5] < 0
+    low = []
+    for words in ("a", "a long word"):
+        around = module.captions(box, camera, HEIGHT, size=SIZE, unit="mm", ends=[(words, words)])
+        low.append(around.bounds[4])
+    assert low[1] < low[0] - 0.5 * (bar.bounds[5] - bar.bounds[4])

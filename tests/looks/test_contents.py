@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+import vizlight
 from vizlight.looks.contents import Contents, Named, sorted_arrays
 from vizlight.mesh import meaning
 
@@ -272,3 +273,31 @@ def test_arrays_that_tell_the_place_are_no_vectors_and_come_last():
     grid.clear_data()
     grid["height"] = grid.points[:, 2]
     assert [array.name for array in Contents(grid).arrays] == ["height"]
+
+
+def test_rounding_is_no_datum():
+    mesh = pv.ParametricTorus(u_res=30, v_res=30, w_res=30)
+    x, y, _ = np.asarray(mesh.points, dtype=np.float64).T
+    noise = np.random.default_rng(3).normal(size=mesh.n_points)
+    mesh["w"] = 1e-12 * noise
+    mesh["pressure"] = 300 + x * y
+    mesh["density"] = (1000 * (1 + 1e-7 * noise)).astype(np.float32)
+    contents = Contents(mesh)
+    assert [array.name for array in contents.arrays] == ["pressure", "w"]
+    words = contents.words_on_rounding()
+    assert "density is 1000 everywhere, but for rounding" in words
+    assert "w, up to 3e-12, is taken for rounding of 0" in words
+    assert "pressure" not in words
+    look = vizlight.look(mesh)
+    assert look.array == "pressure"
+    assert words in look.notes
+    # Small numbers are data where all are small, where they have one sign, or differ more.
+    small = pv.ParametricTorus(u_res=30, v_res=30, w_res=30)
+    small["charge"] = 1e-12 * noise
+    small["permeability"] = 1e-12 * (2 + np.cos(x))
+    small["mass"] = (1 + 1e-5 * noise).astype(np.float32)
+    small["mass"] *= 1e-12
+    assert not Contents(small).words_on_rounding()
+    assert {array.name for array in Contents(small).arrays} == {"charge", "permeability", "mass"}
+    # It is shown where somebody asks for it.
+    assert vizlight.look(mesh, array="w").array == "w"

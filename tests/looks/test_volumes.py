@@ -35,12 +35,12 @@ def test_the_title_of_an_isosurface_has_the_words_and_the_unit_of_its_file():
     words = {"long_name": "air_temperature", "units": "K"}
     meaning.attach(grid, meaning.Meaning(arrays={"T": words}))
     (key,) = vizlight.look(grid, "shape", contour="T", level=0.5).drawing.keys
-    assert parted(key["title"]) == ("Air temperature = 0.5 K", "")
+    assert parted(key["title"]) == ("Air temperature, isosurface at 0.5 K", "")
     grid.field_data["TimeValue"] = [0.0]
     when = meaning.Meaning(arrays={"T": words}, time="days since 2001-02-03")
     meaning.attach(grid, when)
     (key,) = vizlight.look(grid, "shape", contour="T", level=0.5).drawing.keys
-    assert parted(key["title"]) == ("Air temperature = 0.5 K, 2001-02-03", "")
+    assert parted(key["title"]) == ("Air temperature, isosurface at 0.5 K, 2001-02-03", "")
 
 
 def test_an_isosurface_is_cut_open_where_the_values_inside_differ(tmp_path):
@@ -200,7 +200,9 @@ def test_both_signs_of_an_orbital_are_shown(monkeypatch):
     level = key["clim"][1]
     assert [name for _, name in annotated(key["cmap"].run())] == [f"{-level:.4g}", f"{level:.4g}"]
     assert f"isosurface psi = ±{level:.4g}" in look.summary
-    assert key["title"] == f"Psi = ±{level:.4g}"
+    assert key["title"] == f"Psi, isosurfaces at ±{level:.4g}"
+    # Of one colour each they have the light of a shape.
+    assert len(look.scene.lights) == 3
     np.testing.assert_allclose(np.unique(look.mesh["psi"]), [-level, level], rtol=1e-6)
     # The molecule of a cube file is seen through lobes whose faces point outward.
     grid.field_data["atom_numbers"], grid.field_data["atom_places"] = [8, 1], [[0, 0, 0], [1, 0, 0]]

@@ -235,6 +235,8 @@ def _view_of(view: str | None, scene: Scene | None, seen: Keywords) -> object:
         return _saved_camera(view)
     if view in VIEWS:
         return view
+    if (names := view.split(",")) and all(name in VIEWS for name in names):
+        return names
     # In n-space the eye has n components.
     toward = numbers(view, tuple(range(3, 100)))
     if not any(toward):

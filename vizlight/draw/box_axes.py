@@ -10,7 +10,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._types import Array, Given, Indices
-from vizlight.draw.cameras import footprint
+from vizlight.draw.cameras import Mesh, common_bounds, footprint, outermost
 from vizlight.draw.map_frames import rectangle
 from vizlight.draw.ticks import even_numbers, round_length
 from vizlight.mesh import blocks
@@ -25,6 +25,8 @@ SHORTEST, APART = 3.0, 4.0
 MOST = 5
 #: Longest bar of lengths, in the width of a block, and its width in heights of letters.
 BAR, THICK = 0.4, 0.2
+#: Distance of a bar from words above it, between which it has no room, in heights of letters.
+LOWER = 1.3
 
 
 def box_axes(
@@ -109,7 +111,7 @@ def box_edges(mesh: pv.DataSet, camera: pv.Camera, /) -> pv.PolyData:
 
 
 def captions(
-    meshes: pv.MultiBlock,
+    meshes: Mesh,
     camera: pv.Camera,
     /,
     height: float,
@@ -117,19 +119,23 @@ def captions(
     size: float,
     ends: Sequence[Sequence[str]] = (),
     unit: str = "",
+    named: bool = True,
 ) -> pv.PolyData:
     """Return words around blocks: their names above them, their ends below, and a bar of lengths.
 
     Parameters
     ----------
-    meshes : pyvista.MultiBlock
-        Meshes with names.
+    meshes : mesh
+        Blocks with names; another mesh has none.
     camera, height, size
         As for :func:`box_axes`.
     ends : sequence of (str, str), optional
         Words below the left and the right end of each block.
     unit : str, optional
-        Unit of the coordinates, with which a bar of a round length stands below the last block.
+        Unit of the coordinates, with which a bar of a round length stands below the last block. In
+        perspective it is that of lengths at the middle of the block.
+    named : bool, default: True
+        Whether blocks have names; otherwise all of them are taken for one mesh.
 
     Returns
     -------
@@ -141,35 +147,37 @@ def captions(
     TypeError, ValueError
         If a block has no finite box, a height is not positive, or a block has no two ends.
     """
-    _check.instance("meshes", meshes, pv.MultiBlock, "a MultiBlock")
+    _check.instance("meshes", meshes, Mesh, "a PyVista mesh")
+    has_names = _check.boolean("named", named) and isinstance(meshes, pv.MultiBlock)
+    blocks_of = [*zip(meshes.keys(), meshes, strict=True)] if has_names else [("", meshes)]
     height, size = _check.positive("height", height), _check.positive("size", size)
     unit = _check.text("unit", unit)
-    expected = f"two words for each of the {len(meshes)} blocks"
+    expected = f"two words for each of the {len(blocks_of)} blocks"
     pairs: object = ends
-    if not isinstance(pairs, list | tuple) or len(pairs) not in (0, len(meshes)):
+    if not isinstance(pairs, list | tuple) or len(pairs) not in (0, len(blocks_of)):
         raise _check.value_error("ends", expected, _check.describe(ends))
     if not all(isinstance(pair, list | tuple) and len(pair) == 2 for pair in pairs):
         raise _check.value_error("ends", expected, _check.describe(ends))
     ends = [[_check.text("ends", word) for word in pair] for pair in ends]
     eye = _Eye(camera, height)
     parts = list[tuple["Array", "Indices"]]()
-    for i, name in enumerate(meshes.keys()):
+    for i, (name, mesh) in enumerate(blocks_of):
         below = ends[i] if ends else ()
-        is_last = i == len(meshes) - 1
-        parts += _around(_box_of(meshes[i]), str(name), below, unit * is_last, eye, size)
+        is_last = i == len(blocks_of) - 1
+        parts += _around(mesh, str(name), below, unit * is_last, eye, size)
     return blocks.polydata(*letters.union(parts)) if parts else pv.PolyData()
 
 
 def _around(
-    box: Array, name: str, ends: Sequence[str], unit: str, eye: _Eye, size: float
+    mesh: Given, name: str, ends: Sequence[str], unit: str, eye: _Eye, size: float
 ) -> list[tuple[Array, Indices]]:
-    """Return a name above a box, and words and a bar of lengths below it, in parts."""
-    middle = box.mean(axis=1)
-    spots = eye.seen(np.array([middle, *itertools.product(*box)]))
+    """Return a name above a mesh, and words and a bar of lengths below it, in parts."""
+    middle = _box_of(mesh).mean(axis=1)
+    spots = eye.seen(np.array([middle, *outermost(mesh, (-eye.away).tolist(), up=eye.up.tolist())]))
     spots = (spots - spots[0]) / size
     (left, low), (right, high) = spots.min(axis=0), spots.max(axis=0)
     below = low - 2 * GAP - DIGIT / 2
-    words = [(name, 0.0, high + GAP + DIGIT / 2)]
+    words = [(name, 0.0, high + GAP + DIGIT / 2)] if name else []
     for word, column, side in zip(ends, (left, right), (0.5, -0.5), strict=False):
         words.append((word, column + side * letters.width(word), below))
     parts = []
@@ -177,7 +185,10 @@ def _around(
         letter = size * float(eye.pixel(middle)[0])
         length = round_length(BAR * (right - left) * letter)
         long, word = length / letter, f"{length:g} {unit}"
-        start = -(long + 2 * GAP + letters.width(word)) / 2
+        wide = long + 2 * GAP + letters.width(word)
+        start = (left + right - wide) / 2
+        if wide + sum(letters.width(end) + 4 * GAP for end in ends) > right - left:
+            below -= LOWER * bool(ends)
         words.append((word, start + long + 2 * GAP + letters.width(word) / 2, below))
         bar, ids = rectangle(start, start + long, below - THICK / 2, below + THICK / 2)
         parts.append((_facing(middle, bar * size, eye), ids))
@@ -187,10 +198,8 @@ def _around(
 
 def _box_of(mesh: Given) -> Array:
     """Return the ends of the box of a mesh along x, y and z."""
-    _check.instance("mesh", mesh, pv.DataSet, "a mesh")
-    if not mesh.n_points:
-        raise _check.value_error("mesh", "a mesh with points", "none")
-    return _check.coordinates("mesh", mesh.bounds).reshape(3, 2)
+    _check.instance("mesh", mesh, Mesh, "a mesh")
+    return _check.coordinates("mesh", common_bounds("mesh", [mesh])).reshape(3, 2)
 
 
 class _Eye:

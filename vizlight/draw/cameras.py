@@ -174,7 +174,7 @@ def outermost(
     TypeError, ValueError
         If a value does not fit.
     """
-    view = _axes(*_directions(direction, up)), _check.number("aspect", aspect, low=1e-3)
+    view = axes_of(direction, up), _check.number("aspect", aspect, low=1e-3)
     extremes = [_outermost(some, *view) for some in _coordinates(mesh)]
     return np.concatenate([np.empty((0, 3)), *extremes])
 
@@ -210,6 +210,22 @@ def _directions(direction: object, up: Sequence[float] | None) -> tuple[Array, A
     if np.linalg.norm(np.cross(upward, toward)) < 1e-6:
         raise _check.value_error("up", "a direction across the view", tuple(up))
     return toward, upward
+
+
+def axes_of(direction: object, up: Sequence[float] | None = None) -> Array:
+    """Return the unit vectors to the right and up in the picture, and toward the eye, as rows.
+
+    Parameters
+    ----------
+    direction, up
+        As for :func:`camera_on`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value does not fit.
+    """
+    return _axes(*_directions(direction, up))
 
 
 def _axes(toward: Array, up: Array) -> Array:

@@ -33,20 +33,20 @@ from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on
 from vizlight.draw.scalar_bars import name_no_data
+from vizlight.draw.several_views import several_views
 from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks, check
-from vizlight.mesh.both_sides import both_sides
 from vizlight.mesh.polylines import backdrop
 from vizlight.shading.display import NO_DATA, displayable
 from vizlight.shading.results import DEFAULT_NAME, VALID
 from vizlight.vtk.polylines import has_lines_only
 
 __all__ = [
-    "Backend", "BackendError", "Panel", "PlotterKeywords", "Probe", "both_sides", "box_axes",
+    "Backend", "BackendError", "Panel", "PlotterKeywords", "Probe", "box_axes",
     "box_edges", "camera_on", "canvas", "captions", "choose_backend", "make_plotter",
-    "over_shoulder", "pictures", "probe", "save", "save_png",
+    "over_shoulder", "pictures", "probe", "save", "save_png", "several_views",
 ]  # fmt: skip
 
 AntiAliasing = Literal["auto", "ssaa", "msaa", "fxaa"]

@@ -57,6 +57,9 @@ _TABLES = {"TANGENT", "arc_length", "gmsh:bounding_entities", "gmsh:dim_tags"}
 WHITE = (2**8 - 1, 2**16 - 1)
 #: Deviation of greys, as a share of white, below which those of a surface in space are no picture.
 SHADES = 0.12
+#: Steps of a type of numbers through which a constant varies, and size of the values of both signs,
+#: as a share of those of other arrays, at most 1, below which they are taken for rounding.
+ROUNDED, NOISE = 8, 1e-11
 #: Words in the names of kinds, whose numbers may be many.
 _KIND_WORDS = {
     "block", "body", "chain", "class", "classes", "domain", "group", "groups", "label", "labels",
@@ -230,6 +233,20 @@ class Contents:
                     words.append(f"{name} is {finite[0]:g} everywhere")
         return ", ".join(words)
 
+    def words_on_rounding(self) -> str:
+        """Return which arrays vary by no more than the rounding of their numbers, empty if none."""
+        words = []
+        for data in (self.mesh.point_data, self.mesh.cell_data):
+            for name, rows in data.items():
+                values = np.asarray(rows)
+                if values.ndim == 1 and values.dtype.kind == "f" and not _are_numbers(_words(name)):
+                    finite = values[np.isfinite(values)]
+                    if len(finite) and finite.min() < finite.max() and _is_rounded(finite):
+                        words.append(f"{name} is {finite[0]:g} everywhere, but for rounding")
+        noise = _noise(self.mesh, [array.name for array in self.arrays]).items()
+        words += [f"{name}, up to {size:.1g}, is taken for rounding of 0" for name, size in noise]
+        return ", ".join(words)
+
     def first(self, *roles: Role) -> Named | None:
         """Return the best array of some roles, None if no array has one."""
         return next((array for array in self.arrays if array.role in roles), None)
@@ -278,8 +295,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     The active array comes first, of kinds if these have colours of their own, then numbers in
     floating point, components of vectors last, those of points before those of cells, those that
     describe the grid of a model, or tell the place, last; then kinds, those of cells first, which
-    are materials more often than those of points; each in the order of the mesh. Arrays made by
-    filters of light are left out.
+    are materials more often than those of points; each in the order of the mesh. Last are those
+    that are 0 but for rounding. Arrays made by filters of light are left out.
     """
     outputs = records.all_made(mesh)
     described, texture = [], mesh.point_data.active_texture_coordinates_name
@@ -339,7 +356,9 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     parts = {name for vector in joined for name in vector.name.split(",")}
     of_place = _affine(mesh, [array.name for array in described if array.role != "kinds"])
 
-    def rank(array: Named) -> tuple[bool, bool, bool, bool, bool]:
+    noise = _noise(mesh, [array.name for array in described])
+
+    def rank(array: Named) -> tuple[bool, bool, bool, bool, bool, bool]:
         # An active array of kinds with names, such as elements, is the best.
         own = array.name in active and bool(meaning.flags(mesh, array.name))
         kinds = array.role == "kinds" and not own
@@ -348,7 +367,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         static |= array.name in of_place or array.name.startswith("_")
         static |= not _OF_ERRORS.isdisjoint(_words(array.name)) or array.name.lower() in _OF_PARTS
         is_inactive = array.name not in active
-        return (kinds, static, is_inactive, array.name in parts, array.of_cells != kinds)
+        is_noise = noise.keys() >= {*array.name.split(",")}
+        return (is_noise, kinds, static, is_inactive, array.name in parts, array.of_cells != kinds)
 
     return tuple(sorted([*described, *joined], key=rank))
 
@@ -419,6 +439,8 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         is_vector = values.shape[1] in (2, 3) and values.dtype.kind == "f" and np.any(finite)
         return Named(name, "vectors", of_cells) if is_vector else None
     low, high = float(finite.min()), float(finite.max())
+    if named and low < high and _is_rounded(finite.astype(values.dtype)):
+        return None
     if low == high and named:
         # Where it is missing it shows where there is something.
         return Named(name, "kinds", of_cells, 1, low, high) if len(finite) < len(sample) else None
@@ -431,6 +453,33 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     else:
         role = "heights" if ground else "values"
     return Named(name, role, of_cells, distinct, low, high)
+
+
+def _is_rounded(values: Raw) -> bool:
+    """Return whether finite values are one number but for the rounding of their type."""
+    if values.dtype.kind != "f":
+        return False
+    low, high = float(values.min()), float(values.max())
+    return high - low <= ROUNDED * float(np.finfo(values.dtype).eps) * max(abs(low), abs(high))
+
+
+def _noise(mesh: pv.DataSet, names: Sequence[str]) -> dict[str, float]:
+    """Return the sizes of those of some arrays that are around 0 and tiny beside the others."""
+    low, high = dict[str, float](), dict[str, float]()
+    for data in (mesh.cell_data, mesh.point_data):
+        for name in {*names} & {*data}:
+            values = np.asarray(data[name])
+            sample = values[:: max(len(values) // SAMPLE, 1)]
+            finite = sample[np.isfinite(sample)] if values.dtype.kind == "f" else sample
+            if len(finite):
+                low[name], high[name] = float(finite.min()), float(finite.max())
+    sizes = {name: max(-low[name], high[name]) for name in low}
+    usual = max(sizes.values(), default=0.0)
+    return {
+        name: size
+        for name, size in sizes.items()
+        if low[name] < 0 < high[name] and size < NOISE * min(usual, 1.0)
+    }
 
 
 def _are_numbers(words: list[str]) -> bool:

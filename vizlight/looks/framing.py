@@ -70,6 +70,43 @@ class Viewpoint:
     words: str = ""
 
 
+@dataclass(frozen=True)
+class Views:
+    """Views of a mesh that stand beside each other.
+
+    Parameters
+    ----------
+    toward : tuple of vectors
+        Directions toward the eye.
+    names : tuple of str
+        Words above the views.
+    up : tuple of vectors
+        Directions up in the picture. Default: the usual ones.
+    ends : tuple of (str, str)
+        Words below the left and the right end of each view.
+    unit : str, optional
+        Unit of coordinates, for a bar of lengths.
+    words : str
+        Words for the eye.
+    shown : tuple of int, optional
+        Numbers of the views that show the mesh. Default: all.
+    """
+
+    toward: tuple[Vector, ...]
+    names: tuple[str, ...]
+    up: tuple[Vector, ...] | None = None
+    ends: tuple[tuple[str, str], ...] = ()
+    unit: str = ""
+    words: str = ""
+    shown: tuple[int, ...] | None = None
+
+    @property
+    def eye(self) -> Viewpoint:
+        """Eye that sees all views: that of the first."""
+        up: Vector = (0.0, 1.0, 0.0) if abs(self.toward[0][2]) > 0.999 else (0.0, 0.0, 1.0)
+        return Viewpoint(self.toward[0], self.up[0] if self.up else up, True, self.words)
+
+
 #: Eye that sees three sides alike.
 ISOMETRIC = Viewpoint((1.0, 1.0, 1.0), (0.0, 0.0, 1.0))
 

@@ -18,7 +18,7 @@ from vizlight._words import one_of, type_error, value_error
 from vizlight.draw.margins import parted
 from vizlight.draw.render import IMAGES, BackendError
 from vizlight.draw.vector import VECTORS
-from vizlight.looks import film, map_parts, together
+from vizlight.looks import film, map_parts, together, views
 from vizlight.looks import options as look_options
 from vizlight.looks.contents import Contents, may_be_ground
 from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces
@@ -203,6 +203,10 @@ class Look:
         """Return the steps that write a file, or one file for each part of the result."""
         path = files.check_output(path, FORMATS)
         suffix, drawing = path.suffix.lower(), self.drawing
+        if suffix in (*PAGES, *MOVIES) and views.are_several(self.wishes.view):
+            expected = f"one view for '{path}', in which a reader or the eye moves"
+            got = _check.describe(self.wishes.view)
+            raise value_error("view", expected, got, "name a file that ends in .png or .svg")
         if suffix in MOVIES:
             if (whole := film.step(self, path)) is not None:
                 return [[whole]]
@@ -319,7 +323,8 @@ class Look:
             for key in keys[:1]:
                 unit = parted(str(key.get("title", "")))[1]
                 key["title"] = f"{title} ({unit})" if unit and not parted(title)[1] else title
-        return keys
+        alone = surfaces.TITLE_ALONE["cmap"]
+        return [key for key in keys if key.get("title") or key.get("cmap") is not alone]
 
     def read_steps(self) -> list[Step]:
         """Return the steps that print how much a reader reads back from the picture."""
@@ -418,10 +423,11 @@ def look(
         ``"relief"`` or ``"flow"``. ``"auto"``: by the data.
     array : str, optional
         Array that is shown; of components their names, ``"u,v"``. Default: the best.
-    view : str, vector or pyvista.Camera, optional
+    view : str, vector or pyvista.Camera, or sequence of views, optional
         Direction toward the eye: ``"front"``, ``"back"``, ``"left"``, ``"right"``, ``"top"``,
         ``"bottom"``, ``"iso"``, an axis such as ``"x"`` or ``"-y"``, three numbers, or a camera.
-        The front of a part is toward -y, its right toward x. Default: by the data.
+        The front of a part is toward -y, its right toward x. Of several, such as ``["front",
+        "side", "top"]``, each has its place in a picture, all in one scale. Default: by the data.
     size : (int, int), default: (1200, 800)
         Width and height of the picture in pixels.
     style : {"paper", "dark"}
@@ -466,6 +472,7 @@ def look(
 
 def decide(data: object, wishes: Wishes) -> Look:
     """Return the look of data, by options that are sorted out."""
+    wishes = views.asked(wishes)
     if isinstance(data, pv.MultiBlock):
         blocks.check(data)
         data = [blocks.one_grid(part) for part in blocks.by_dimension(data)] or data
@@ -492,21 +499,27 @@ def decide(data: object, wishes: Wishes) -> Look:
         step, contents = look_options.charted(step, contents, wishes)
         step, contents = look_options.laid_flat(step, contents, wishes)
         rule, case = _chosen(step, contents, wishes)
-        wide = replace(case, wishes=replace(wishes, wide=case.is_wide))
+        case = views.of_case(case)
+        more = {"bar": views.unit_of_bar(case), "wide": case.is_wide}
+        wide = replace(case, wishes=replace(case.wishes, **more))
         return _decided(rule, wide, notes)
     by_part = [together.wishes_of(wishes, contents) for _, contents, _ in ready]
     if wishes.array is not None and not any(it.array for it in by_part):
         by_part[0] = wishes  # whose error says what is there
+    pair = views.of_pair([contents.mesh for _, contents, _ in ready], wishes)
+    if pair:
+        by_part = [replace(it, views=mine) for it, mine in zip(by_part, pair, strict=True)]
     chosen = [
         _chosen(step, contents, it) for (step, contents, _), it in zip(ready, by_part, strict=True)
     ]
-    shared = together.shared([case for _, case in chosen], wishes)
+    shared = together.shared([case for _, case in chosen])
     looks = [
         _decided(rule, replace(case, wishes=mine), notes)
         for (rule, case), mine, (_, _, notes) in zip(chosen, shared, ready, strict=True)
     ]
     cases = [case for _, case in chosen]
-    drawing = together.joined(together.seen_through(cases, [look.drawing for look in looks]))
+    drawings = [look.drawing for look in looks]
+    drawing = together.joined(drawings if pair else together.seen_through(cases, drawings))
     if len(several) == 1:
         drawing = replace(drawing, alone=looks[0].drawing.lit)
     reasons = "; ".join(dict.fromkeys(look.reason for look in looks))
@@ -546,6 +559,7 @@ def _decided(rule: Rule, case: Case, notes: Sequence[str], unread: int = 0) -> L
 def _look_of(rule: Rule, case: Case, drawing: Drawing, notes: Sequence[str]) -> Look:
     """Return the look of one mesh, as a recipe draws it, with the frame and coasts of a map."""
     drawing = maps.furnished(case, drawing)
+    drawing = views.with_bar(case, views.arranged(case, drawing))
     drawing = replace(drawing, notes=[*notes, *drawing.notes])
     place = case.place_of_cut(drawing.camera)
     if place and drawing.keys and drawing.keys[0].get("title"):
@@ -694,7 +708,8 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         notes += [step.note] if step.note else []
     if contents.mesh is not step.run():
         contents = replace(contents, mesh=step.run())
-    notes += [words] if (words := contents.words_on_none()) else []
+    words = [contents.words_on_none(), contents.words_on_rounding()]
+    notes += [text for text in words if text]
     return step, contents, notes
 
 

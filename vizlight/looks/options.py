@@ -18,7 +18,7 @@ from vizlight.draw import render
 from vizlight.draw.ticks import round_length
 from vizlight.filters import tint
 from vizlight.filters.streamlines import vectors_by_default
-from vizlight.looks import cuts, map_parts
+from vizlight.looks import cuts, map_parts, views
 from vizlight.looks.contents import Contents
 from vizlight.looks.steps import DISPLACED, Step
 from vizlight.looks.wishes import STYLES, Wishes, direction, scene_step
@@ -134,7 +134,7 @@ def sorted_out(
     _check.choice("style", style, tuple(STYLES))
     if array is not None:
         _check.text("array", array, expected="the name of an array")
-    if view is not None and not hasattr(view, "GetPosition"):
+    if view is not None and not hasattr(view, "GetPosition") and not views.are_several(view):
         direction(view, n=None)
     columns, rows = render.pixels_of(size)
     light_names = {*inspect.signature(LightOptions).parameters}

@@ -44,7 +44,7 @@ def wishes_of(wishes: Wishes, contents: Contents) -> Wishes:
     return replace(wishes, array=array, light=light, picture=picture)
 
 
-def shared(cases: Sequence[Case], wishes: Wishes) -> list[Wishes]:
+def shared(cases: Sequence[Case]) -> list[Wishes]:
     """Return the wishes of each case, with one camera and one range for each array.
 
     The camera looks as suits the case of the highest dimension. Arrays to which a reader gave one
@@ -52,7 +52,7 @@ def shared(cases: Sequence[Case], wishes: Wishes) -> list[Wishes]:
     """
     first = max(cases, key=lambda case: case.contents.dimension)
     whole = Step("whole", "pyvista.MultiBlock", [case.data for case in cases])
-    camera = wishes.camera(whole, first.eye(first.data))
+    camera = first.wishes.camera(whole, first.eye(first.data))
     ranges: dict[str, list[tuple[float, float]]] = {}
     for case in cases:
         if case.array is not None and case.array.role in ("values", "heights"):
@@ -115,12 +115,16 @@ def joined(drawings: Sequence[Drawing]) -> Drawing:
             question = key.get("question") or (scene and preset_of(scene.run()))
             identity = (question, key.get("title") if question == "value" else "", key.get("clim"))
             keys.setdefault(repr(identity), key)
+    every = [layer for drawing in drawings for layer in drawing.layers]
+    # Words around views are those of all meshes.
+    words_around = [layer for layer in every if layer.mesh.path == "render.captions"]
+    layers = [layer for layer in every if layer not in words_around]
     first = drawings[0]
     words = dict.fromkeys(drawing.words for drawing in drawings)
     background = next((each.background for each in drawings if each.background), None)
     return replace(
         first,
-        layers=[layer for drawing in drawings for layer in drawing.layers],
+        layers=[*layers, *words_around[:1]],
         lit=lit,
         words=f"{len(drawings)} meshes: {', '.join(words)}",
         keys=list(keys.values()),

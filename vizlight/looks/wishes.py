@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign, Keywords, Vector
     from vizlight.looks.contents import Named
-    from vizlight.looks.framing import Viewpoint
+    from vizlight.looks.framing import Viewpoint, Views
     from vizlight.scene import Scene
 
     #: Function that returns the step of a scene, of a question, the steps of a view and a camera,
@@ -59,6 +59,12 @@ AROUND = 0.35
 GLOBAL = 340.0
 #: Height of letters of numbers around a box, in those of keys.
 SMALL = 0.85
+#: Factor of letters for which a camera has room: it is farther away with them than without.
+SPARE = 1.15
+#: Function that makes words and a bar of lengths around meshes.
+CAPTIONS = "render.captions"
+#: Function that puts views beside each other.
+BESIDE = "render.several_views"
 #: Bounding box that shows where a camera of n-space looks.
 BOX = (-1, 1, -1, 1, -1, 1)
 
@@ -150,6 +156,10 @@ class Wishes:
         Largest error between points.
     frame : Step, optional
         Step of a camera that several meshes share.
+    views : Views, optional
+        Views that stand beside each other.
+    bar : str
+        Unit of a bar of lengths below the data, which stands where nothing else says lengths.
     wide : bool
         Whether a map is so wide that its key lies below it.
     steps : sequence of float
@@ -171,6 +181,8 @@ class Wishes:
     surface: bool = True
     refine: float | None = None
     frame: Step | None = None
+    views: Views | None = None
+    bar: str = ""
     wide: bool = False
     steps: Sequence[float] = ()
     source: Sequence[str] = ()
@@ -238,6 +250,8 @@ class Wishes:
         fixed = self.frame or self.fixed_camera()
         if fixed is not None:
             return fixed
+        if self.views is not None:
+            return self._camera_on_views(mesh, self.views, key)
         keywords: Keywords = {}
         if self.view is None:
             toward, parallel = eye.toward, eye.parallel
@@ -254,8 +268,9 @@ class Wishes:
         width, height = self._room(key)
         aspect = round(width / height, 4)
         step = Step("camera", "render.camera_on", mesh, toward, **keywords, aspect=aspect)
-        if axes:
-            both = Step("", "pyvista.MultiBlock", [mesh, self.box_axes(mesh, step, axes)])
+        if axes or self.bar:
+            words = self.box_axes(mesh, step, axes) if axes else self.captions(mesh, step, SPARE)
+            both = Step("", "pyvista.MultiBlock", [mesh, words])
             step = Step("camera", "render.camera_on", both, toward, **keywords, aspect=aspect)
         step.note = eye.words if self.view is None else ""
         return step
@@ -266,6 +281,43 @@ class Wishes:
         if list(names) != ["x", "y", "z"]:
             words["names"] = list(names)
         return Step("axes", "render.box_axes", box, camera, round(self.room[1], 1), **words)
+
+    def captions(
+        self, mesh: object, camera: Step, spare: float = 1.0, ends: Sequence[str] = ()
+    ) -> Step:
+        """Return the step that makes the bar of lengths below a mesh, between words for its ends.
+
+        Letters are larger by the factor ``spare``.
+        """
+        words: Keywords = {"unit": self.bar, "named": False}
+        if ends:
+            words["ends"] = [list(ends)]
+        return self._captions(mesh, camera, spare, **words)
+
+    def names_of(self, blocks: Step, camera: Step, spare: float = 1.0) -> Step:
+        """Return the step that makes the words and the bar of lengths around several views."""
+        views = self.views
+        assert views is not None
+        words: Keywords = {"unit": views.unit or self.bar}
+        if views.ends:
+            words["ends"] = [list(pair) for pair in views.ends]
+        return self._captions(blocks, camera, spare, **words)
+
+    def _captions(self, meshes: object, camera: Step, spare: float, **words: object) -> Step:
+        size = round(spare * SMALL * LETTERS * min(self.size), 1)
+        height = round(self.room[1], 1)
+        return Step("captions", CAPTIONS, meshes, camera, height, size=size, **words)
+
+    def _camera_on_views(self, mesh: object, views: Views, key: float | None) -> Step:
+        """Return the step of the camera on views of a mesh, and on the words around them."""
+        alone, (width, height) = replace(self, views=None, view=None, bar=""), self.room
+        ups = {"up": list(views.up)} if views.up else {}
+        blocks = Step(
+            "views", BESIDE, mesh, list(views.toward), **ups, names=list(views.names),
+            aspect=round(width / height, 4),
+        )  # fmt: skip
+        words = self.names_of(blocks, alone.camera(blocks, views.eye, key=key), SPARE)
+        return alone.camera(Step("", "pyvista.MultiBlock", [blocks, words]), views.eye, key=key)
 
     @property
     def room(self) -> tuple[float, float]:

@@ -21,7 +21,7 @@ from vizlight.draw.margins import ink_on, parted
 from vizlight.draw.render import KEY_SIZE
 from vizlight.draw.ticks import numerals_of
 from vizlight.files import FORMATS
-from vizlight.looks import levels, map_parts, two_sides
+from vizlight.looks import levels, map_parts
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from vizlight._types import Array, Foreign, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.ranges import Range
-    from vizlight.looks.two_sides import TwoSides
     from vizlight.looks.wishes import Wishes
 
 #: Colour map where nothing is lit, and that of values on lit surfaces.
@@ -80,6 +79,8 @@ BANDS = "vizlight.maps.bands"
 #: and share of the points of borders that are on sides where a box cuts a surface.
 ON_BOX, CUT = 1e-3, 0.95
 
+#: Functions that make letters that face the eye of the picture.
+FACING = ("render.box_axes", "render.captions")
 #: Least cosine between an axis and a side of the picture along which it runs.
 ALONG = 0.99
 
@@ -211,14 +212,15 @@ class Drawing:
             first = step.arguments[0] if step.arguments else None
             if step.path == "render.box_edges" and isinstance(first, Step):
                 layer = dataclasses.replace(layer, mesh=first)
-            if isinstance(first, Step) and first.path == "render.both_sides":
+            if isinstance(first, Step) and first.path == "render.several_views":
                 if step.arguments[1:] != (0,):
                     continue
-                surface, toward = first.arguments
+                surface, (toward, *_) = first.arguments  # type: ignore[misc]
                 assert isinstance(surface, Step)
-                camera = Step("camera", camera.path, surface, toward, **camera.keywords)
+                framed = first.keywords.get("around", surface)
+                camera = Step("camera", camera.path, framed, toward, **camera.keywords)
                 layer = dataclasses.replace(layer, mesh=surface)
-            if step.path != "render.box_axes":
+            if step.path not in FACING:
                 kept.append(layer)
         return dataclasses.replace(self, layers=kept, camera=camera)
 
@@ -334,7 +336,7 @@ class Case:
         """
         edges = Step("", "render.box_edges", box, camera)
         layers = [Layer(edges, BOX_EDGES | BESIDE, live=False)]
-        if self.wishes.frame is None:
+        if self.wishes.frame is None and self.wishes.views is None:
             layers.append(self.inked(self.wishes.box_axes(box, camera, self.axes)))
         return layers
 
@@ -347,6 +349,8 @@ class Case:
         """Return from where a mesh is seen, if no view is given in its place."""
         if self.wishes.view is not None or self.wishes.frame is not None:
             return ISOMETRIC
+        if self.wishes.views is not None:
+            return self.wishes.views.eye
         if self.viewpoint is not None:
             return self.viewpoint
         if self.box is not None:
@@ -385,6 +389,20 @@ class Case:
         ]
         return ", ".join([place, *words])
 
+    def ends_of_body(self, camera: Step) -> Sequence[str]:
+        """Return the letters of the sides of a body at the left and the right of the picture.
+
+        They are L, R, P, A, I and S; there are none where no axis runs across the picture, and of
+        other data.
+        """
+        eye = camera.run()
+        right = np.cross(eye.direction, eye.up)
+        across = np.flatnonzero(np.abs(right) > ALONG)
+        if not self.is_of_body or not len(across):
+            return ()
+        ends = ("LR", "PA", "IS")[across[0]]
+        return ends if right[across[0]] > 0 else ends[::-1]
+
     @property
     def is_of_body(self) -> bool:
         """Whether a file says that axes are those of a body."""
@@ -407,26 +425,13 @@ class Case:
         x, y = (0.0, 1.0) if self.question in NORTH_UP else self.eye(self.data).up[:2]
         return x, y
 
-    @cached_property
-    def sides(self) -> TwoSides | None:
-        """Both sides of a flattened surface with other values on each, None for all else."""
-        array, wishes = self.array, self.wishes
-        is_free = wishes.view is None and wishes.frame is None and not self.on_globe
-        has_values = array is not None and array.role in ("values", "heights")
-        is_surface = self.contents.dimension == 2 and self.contents.flat_axis is None
-        if not (
-            is_free and has_values and is_surface and isinstance(self.surface.run(), pv.PolyData)
-        ):
-            return None
-        return two_sides.of_surface(self.surface, self.needed_array.name)
-
     @property
     def is_wide(self) -> bool:
         """Whether it is a map so wide, or two sides, that are larger with their key below them."""
         wide, tall = self.wishes.size
         if not self.wishes.picture.get("key", True) or wide < tall:
             return False
-        if self.sides is not None:
+        if self.wishes.views is not None:
             return True
         if not self._is_above:
             return False
@@ -470,9 +475,8 @@ class Case:
         axes = self.axes if boxed else ()
         key: float | None = KEY_SIZE
         if self.in_room:
-            # A room needs no key, and a mesh of no file has no title.
-            key = 0.0 if self.is_isosurface or file_named(self.data) else None
-            key = 0.0 if self.wishes.picture.get("title") else key
+            # A room needs no key.
+            key = 0.0
         return self.wishes.camera(mesh, eye, axes=axes, key=key)
 
     @cached_property
@@ -724,7 +728,7 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | 
         title = title.lower()
     unit = "" if unit == "1" else meaning.written(unit)
     if level is not None:
-        title = f"{title} = {levels.number(level)} {unit}".rstrip()
+        title = f"{title}, isosurface at {levels.number(level)} {unit}".rstrip()
     if (text := meaning.of(mesh).level) and attributes.get("level") != "none":
         title += f" at {text}"
     if series.TIME in mesh.field_data:

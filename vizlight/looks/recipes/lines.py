@@ -39,6 +39,8 @@ DIRECTION = "direction"
 #: Least width of lines in widths of the thinnest, their largest in pixels, and the share of a
 #: picture that they may fill.
 THINNEST, WIDEST, COVERED = 1.7, 6.0, 0.08
+#: Width of the halo of a wide line, in widths of the thinnest.
+BAND = 1.5
 #: Side of the squares in which lines are crowded, in widths of the thinnest, and the share of them
 #: that they may fill.
 SQUARE, CROWDED = 8.0, 0.5
@@ -93,7 +95,7 @@ def lines(case: Case) -> Drawing:
     name, array = case.wishes.picture.get("scalars"), case.array
     if name == DIRECTION or (name is None and case.wishes.question == "auto" and array is None):
         lit = case.lit(mesh, scene, **light)
-        is_dense = bool(pen.get("halo"))
+        is_dense = isinstance(pen.get("halo"), str)
         longest = _longest(mesh) if is_dense else None
         if longest is not None:
             camera = case.camera(longest)
@@ -292,7 +294,11 @@ def _pen(case: Case, camera: Step) -> Keywords:
         width = np.clip(widest, case.width / 2, WIDEST)
         return {"line_width": round(float(width), 1), "halo": False}
     pen: Keywords = {"line_width": round(float(np.clip(widest, thinnest, WIDEST)), 1)}
-    return pen | {"halo": "black"} if widest < thinnest else pen
+    if widest < thinnest:
+        return pen | {"halo": "black"}
+    # The halo of a wide line is as wide as that of a thin one.
+    share = BAND * case.width / pen["line_width"]
+    return pen | {"halo": round(share, 2)} if share < 1 else pen
 
 
 def _crowd(places: Array, lengths: Array, camera: Step) -> float:

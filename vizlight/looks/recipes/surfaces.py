@@ -30,7 +30,7 @@ from vizlight.looks.recipes.drawing import (
 )
 from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import DISPLACED, Step
-from vizlight.mesh import blocks, meaning
+from vizlight.mesh import blocks, brains, georeference, meaning
 from vizlight.mesh.nspace import POSITION
 
 if TYPE_CHECKING:
@@ -75,16 +75,16 @@ def values(case: Case) -> Drawing:
             drawing = values(replace(case, data=inner, contents=Contents(inner.run())))
             note = f"{array.name} {kinds[0]:g}, which is around all else, is left out"
             return replace(drawing, notes=[*drawing.notes, note])
-    sides, outline = case.sides, _undisplaced(case)
-    if sides is None:
-        framed = mesh if outline is None else Step("", "pyvista.MultiBlock", [mesh, outline])
-        camera = case.camera(framed, case.eye(mesh))
-    else:
-        camera, names = sides.camera_and_names(case.wishes)
+    outline = _undisplaced(case)
+    framed = mesh if outline is None else Step("", "pyvista.MultiBlock", [mesh, outline])
+    camera = case.camera(framed, case.eye(mesh))
     light = case.wishes.light_of_surface()
     bent = case.question != "none"
     # Seen along an axis, much of a surface faces the eye, and a lamp there would show no relief.
-    lamp = "" if sides is None and array.role != "kinds" else "lamp"
+    # Neither would it on lobes of one colour each.
+    has_lobes = isinstance(case.wishes.part.get("level"), tuple)
+    is_shaded = case.wishes.views is not None or array.role == "kinds"
+    lamp = "room" if has_lobes else "lamp" if is_shaded else ""
     scene = case.exposed(mesh, camera, lamp, **light) if bent else case.scene(camera)
     keywords = case.wishes.colors
     note = ""
@@ -120,10 +120,7 @@ def values(case: Case) -> Drawing:
         notes = [f"{array.name} has {count} kinds: colours repeat, and have no key"]
         title = f"{keys[0]['title']}; {count} kinds"
         keys = [keys[0] | TITLE_ALONE | {"title": title}]
-    if sides is None:
-        layers = [Layer(mesh, shown), *edges.edges(camera), *case.strokes([outline], **BEFORE)]
-    else:
-        layers = [*(Layer(side, shown) for side in sides.layers()), case.inked(names)]
+    layers = [Layer(mesh, shown), *edges.edges(camera), *case.strokes([outline], **BEFORE)]
     drawing = Drawing(
         layers, camera, scene, lit,
         words, keys,
@@ -192,7 +189,7 @@ def surface(case: Case) -> Drawing:
     name = case.wishes.part.get("contour")
     words = f"isosurface of {name}" if name else "surface"
     drawn = {"scene": scene, **case.wishes.drawn(light)}
-    title = words if name else file_named(mesh)
+    title = words if name else "; ".join(filter(None, [file_named(mesh), _size_of(case)]))
     if name and case.wishes.part.get("level") is not None:
         title = titled(mesh.run(), name, level=case.wishes.part["level"])
     keys = _keys(case, scene, title)
@@ -206,6 +203,16 @@ def _keys(case: Case, scene: Step, title: str) -> list[Keywords]:
         # A room needs no key: everybody has seen things in one.
         return [TITLE_ALONE | {"title": title}] if title else []
     return [{"scene": scene, "title": title}]
+
+
+def _size_of(case: Case) -> str:
+    """Return the sizes of the box of a part along its axes, with their unit if one is known."""
+    if not case.in_room or case.on_globe or brains.hemisphere(case.surface.run()):
+        return ""
+    unit = georeference.unit_of(case.data.run())
+    words = meaning.written(unit) if meaning.metres(unit) else ""
+    sizes = case.surface.run().bounds_size
+    return f"{' × '.join(f'{size:.4g}' for size in sizes)} {words}".rstrip()
 
 
 def plane(case: Case) -> Drawing:

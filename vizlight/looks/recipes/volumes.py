@@ -228,7 +228,7 @@ def _of_both_signs(surface: Case, array: Named, ends: tuple[float, float], words
     table = color_table([], cmap=cmap, clim=ends)
     colors = {place: to_hex(table.map_value(end)) for place, end in enumerate(ends)}
     key = drawing.keys[0] | {
-        "title": f"{title} = {words} {unit}".rstrip(),
+        "title": f"{title}, isosurfaces at {words} {unit}".rstrip(),
         # Nothing is drawn between the levels, as a bar would say.
         "cmap": Step("", "vizlight.maps.kinds", named, colors=colors),
     }

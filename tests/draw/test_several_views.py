@@ -1,0 +1,89 @@
+"""A mesh from several sides, beside each other."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from vizlight.draw.several_views import several_views
+
+BOTH, NAMES = [(0, -1, 0), (0, 1, 0)], ("front", "back")
+
+
+def ellipsoid(*sizes):
+    mesh = pv.Sphere().scale(sizes)
+    mesh["x"] = np.asarray(mesh.points)[:, 0].copy()
+    mesh["way"] = np.tile([1.0, 2.0, 3.0], (mesh.n_points, 1))
+    return mesh
+
+
+@pytest.mark.parametrize(("sizes", "away"), [((4, 1, 3), (1.08, 0, 0)), ((9, 1, 3), (0, 0, -1.25))])
+def test_the_second_view_is_turned_and_stands_beside_the_first(sizes, away):
+    mesh = ellipsoid(*sizes)
+    blocks = several_views(mesh, BOTH, names=NAMES)
+    assert blocks.keys() == ["front", "back"]
+    np.testing.assert_array_equal(blocks[0].points, mesh.points)
+    expected = mesh.bounds_size * np.array(away)
+    np.testing.assert_allclose(np.subtract(blocks[1].center, blocks[0].center), expected, atol=1e-5)
+    turned = np.asarray(blocks[1].points) - blocks[1].center
+    expected = (np.asarray(mesh.points) - mesh.center) * (-1, -1, 1)
+    np.testing.assert_allclose(turned, expected, atol=1e-5)
+    np.testing.assert_array_equal(blocks[1]["x"], mesh["x"])
+    np.testing.assert_allclose(blocks[1]["way"][0], (-1, -2, 3), atol=1e-6)
+    np.testing.assert_array_equal(mesh["way"][0], (1, 2, 3))
+
+
+def test_the_eye_of_the_first_sees_each_from_its_side_and_in_one_scale():
+    # Width, depth and height of a part, which the front, its right side and the top show in pairs.
+    part = pv.Box((0, 4, 0, 2, 0, 3))
+    blocks = several_views(
+        part, [(0, -1, 0), (1, 0, 0), (0, 0, 1)], names=("front", "side", "top"), aspect=3.0
+    )
+    flat = [np.delete(block.bounds_size, 1) for block in blocks]
+    np.testing.assert_allclose(flat, [(4, 3), (2, 3), (4, 2)], atol=1e-6)
+    # The right side shows the front at its left, and the top shows it below.
+    corner = int(np.argmin(np.asarray(part.points) @ (0, 1, 0)))
+    assert blocks["side"].points[corner, 0] < blocks["side"].center[0]
+    assert blocks["top"].points[corner, 2] < blocks["top"].center[2]
+    for one, other in ((0, 1), (1, 2), (0, 2)):
+        left, right = blocks[one].bounds[1], blocks[other].bounds[0]
+        assert left < right
+
+
+def test_parts_of_a_mesh_stay_together():
+    part = pv.Box((0, 4, 0, 2, 0, 3))
+    corner = pv.PolyData(np.asarray(part.points)[:1])
+    whole = several_views(part, BOTH, names=NAMES)
+    alone = several_views(corner, BOTH, names=NAMES, around=part)
+    both = several_views(pv.MultiBlock([part, corner]), BOTH, names=NAMES)
+    for name in NAMES:
+        np.testing.assert_allclose(alone[name].points[0], whole[name].points[0], atol=1e-6)
+        np.testing.assert_allclose(both[name][1].points[0], whole[name].points[0], atol=1e-6)
+
+
+def test_colors_of_bytes_are_no_vectors():
+    mesh = pv.Sphere(theta_resolution=6, phi_resolution=6)
+    mesh["rgb"] = np.full((mesh.n_points, 3), (250, 10, 20), np.uint8)
+    mesh.cell_data["rgb"] = np.full((mesh.n_cells, 3), (1, 2, 3), np.uint8)
+    turned = several_views(mesh, BOTH, names=NAMES)["back"]
+    for rows, expected in (
+        (turned.point_data["rgb"], (250, 10, 20)), (turned.cell_data["rgb"], (1, 2, 3))
+    ):  # fmt: skip
+        assert rows.dtype == np.uint8
+        np.testing.assert_array_equal(rows[0], expected)
+
+
+@pytest.mark.parametrize(
+    ("views", "options", "words"),
+    [
+        ([], {"names": ()}, "views: expected directions toward the eye"),
+        (BOTH, {"names": ("a",)}, "names: expected 2 names"),
+        (BOTH, {"names": ("a", "a")}, "names: expected names that differ"),
+        (BOTH, {"names": NAMES, "up": [(0, 0, 1)]}, "up: expected 2 directions"),
+        (BOTH, {"names": NAMES, "aspect": 0.0}, "aspect"),
+    ],
+)
+def test_views_that_are_none_are_refused(views, options, words):
+    with pytest.raises(ValueError, match=words):
+        several_views(pv.Sphere(), views, **options)
+    with pytest.raises(TypeError, match="mesh: expected a PyVista mesh"):
+        several_views(np.zeros(3), BOTH, names=NAMES)
