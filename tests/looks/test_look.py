@@ -117,8 +117,9 @@ def test_hues_that_tell_normals_are_for_those_who_ask_for_them():
     assert [other.shell for other in look.others] == ["--for shape"]
     assert not asked.others
     assert [preset_of(each.scene) for each in (look, asked)] == [None, "shape"]
-    # Nobody needs to be told how things look in a room.
-    assert (len(look.drawing.keys), len(asked.drawing.keys)) == (0, 1)
+    # Nobody needs to be told how things look in a room: its title has the sizes alone.
+    assert [key.get("scene") is None for key in look.drawing.keys] == [True]
+    assert [key.get("scene") is None for key in asked.drawing.keys] == [False]
     assert look.wishes.room[0] < look.drawing.camera.keywords["aspect"] * look.wishes.room[1]
     lit, view = vizlight.illuminate(pv.Sphere(), look.scene), look.scene.view
     across = lit["Normals"] @ np.cross(view.up, view.direction)
@@ -218,7 +219,7 @@ def test_a_look_is_a_page_a_mesh_and_a_movie(tmp_path):
 def test_a_movie_of_a_turn_cuts_nothing_off_and_has_the_frames_of_its_options(tmp_path):
     pytest.importorskip("imageio")
     rod = pv.Cube(x_length=8.0).triangulate()
-    look = vizlight.look(rod, size=(120, 80), frames=6, fps=5.0)
+    look = vizlight.look(rod, size=(360, 240), frames=6, fps=5.0)
     with Image.open(look.save(tmp_path / "a.gif")) as movie:
         assert movie.n_frames == 6
         assert movie.info["duration"] == 200
@@ -402,7 +403,7 @@ def test_many_atoms_without_bonds_are_balls_with_light(tmp_path):
     assert (look.shown, look.array) == ("molecule", "atom_type")
     # Half of the radius of argon, 1.88 angstroms.
     np.testing.assert_allclose(np.reshape(look.mesh.bounds, (3, 2))[:, 0], -0.94, atol=0.06)
-    assert not any(layer.keywords.get("lighting") is False for layer in look.drawing.layers)
+    assert look.drawing.layers[0].keywords.get("lighting") is not False
 
 
 def test_ligands_are_balls_and_sticks_beside_the_chains(tmp_path):
@@ -419,7 +420,7 @@ def test_ligands_are_balls_and_sticks_beside_the_chains(tmp_path):
     path.write_text("\n".join(rows) + "\n")
     look = vizlight.look(path, size=SIZE)
     assert look.shown == "backbone"
-    chains, ligands = (layer.mesh.run() for layer in look.drawing.layers)
+    chains, ligands = (layer.mesh.run() for layer in look.drawing.layers[:2])
     assert chains.bounds[1] < 10
     # The ball of the ligand, without water, is in the picture.
     np.testing.assert_allclose(ligands.center, (40, 0, 0), atol=0.01)
@@ -620,8 +621,11 @@ def test_a_page_has_the_bar_of_its_values_and_is_seen_whole(tmp_path):
     page = vizlight.look(grid, size=SIZE).save(tmp_path / "kinds.html").read_text("utf-8")
     content = json.loads(page.partition('id="scene">')[2].partition("</script>")[0])
     (bar,) = content["bars"]
-    assert (bar["title"], bar["numbers"]) == ("kind", ["0", "1", "2"])
-    assert [color.partition(" ")[2] for color in bar["colors"]][1] == "33.3333% 66.6667%"
+    assert [words for _, words in bar["marks"]] == ["0", "1", "2"]
+    np.testing.assert_allclose([at for at, _ in bar["marks"]], [1 / 6, 1 / 2, 5 / 6])
+    # The colour of the second kind fills the middle third.
+    ends = [float(color.partition(" ")[2].rstrip("%")) for color in bar["colors"][2:4]]
+    np.testing.assert_allclose(ends, [100 / 3, 200 / 3], atol=0.1)
     # The long side of the grid fits in a square.
     assert content["camera"]["scale"] >= 23 / 2
 

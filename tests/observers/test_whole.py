@@ -201,7 +201,8 @@ def test_walls_without_their_near_sides_hide_nothing():
     bare = plotter.vizlight.legibility(**HOW).pixels
     walls = plotter.add_mesh(box, culling="front", lighting=False, pickable=False)
     assert plotter.vizlight.legibility(**HOW).pixels == bare
-    walls.prop.culling = "back"
+    walls.prop.BackfaceCullingOn()
+    walls.prop.FrontfaceCullingOff()
     with pytest.raises(ValueError, match="a point that the eye sees"):
         plotter.vizlight.legibility(**HOW)
     plotter.close()

@@ -190,8 +190,7 @@ class CameraOptions:
     Parameters
     ----------
     view
-        Eye: front, back, left, right, top, bottom, iso, or several: front,side,top; x,y,z; a JSON
-        file.
+        Eye: front, back, left, right, top, bottom, iso, or several; x,y,z; a JSON file.
     up
         Direction x,y,z that is up, or x, y or z. Default: z, or y seen along z.
     parallel

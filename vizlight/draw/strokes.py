@@ -144,7 +144,7 @@ def color_of_halo(stroke: Stroke, renderer: vtkRenderer) -> tuple[float, float, 
 
 def shares_of(mesh: pv.DataSet, width: str) -> Array:
     """Return the shares of the width of lines that a point array tells, from 0 to 1."""
-    return np.clip(np.nan_to_num(mesh.point_data[width], nan=0.0), 0.0, 1.0)
+    return np.asarray(np.clip(np.nan_to_num(mesh.point_data[width], nan=0.0), 0.0, 1.0))
 
 
 def directions(mesh: pv.DataSet, width: str | None = None) -> Array:

@@ -18,7 +18,7 @@ from vizlight.vtk.cells import dimensions
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import AnyArray, Array, Raw
+    from vizlight._types import AnyArray, Array, Foreign, Raw
 
 Role: TypeAlias = Literal["vectors", "heights", "values", "kinds", "colors"]
 
@@ -457,10 +457,11 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
 
 def _is_rounded(values: Raw) -> bool:
     """Return whether finite values are one number but for the rounding of their type."""
-    if values.dtype.kind != "f":
+    kind: Foreign = values.dtype
+    if kind.kind != "f":
         return False
     low, high = float(values.min()), float(values.max())
-    return high - low <= ROUNDED * float(np.finfo(values.dtype).eps) * max(abs(low), abs(high))
+    return high - low <= ROUNDED * float(np.finfo(kind).eps) * max(abs(low), abs(high))
 
 
 def _noise(mesh: pv.DataSet, names: Sequence[str]) -> dict[str, float]:

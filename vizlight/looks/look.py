@@ -500,8 +500,8 @@ def decide(data: object, wishes: Wishes) -> Look:
         step, contents = look_options.laid_flat(step, contents, wishes)
         rule, case = _chosen(step, contents, wishes)
         case = views.of_case(case)
-        more = {"bar": views.unit_of_bar(case), "wide": case.is_wide}
-        wide = replace(case, wishes=replace(case.wishes, **more))
+        bar = views.unit_of_bar(case)
+        wide = replace(case, wishes=replace(case.wishes, bar=bar, wide=case.is_wide))
         return _decided(rule, wide, notes)
     by_part = [together.wishes_of(wishes, contents) for _, contents, _ in ready]
     if wishes.array is not None and not any(it.array for it in by_part):

@@ -256,7 +256,7 @@ def _form(rows: AnyArray) -> tuple[bool, tuple[int, ...]]:
 def _filling(
     name: str, kinds: Sequence[RawType], form: tuple[bool, tuple[int, ...]], *, whole: bool
 ) -> tuple[RawType, object]:
-    """Return the type that holds all rows and what stands where there are none."""
+    """Return the type that holds all rows and what stands where none are."""
     kind = np.result_type(*kinds)
     if not form[0]:
         return kind, ""

@@ -44,7 +44,7 @@ def missing_part(file: BinaryIO) -> str:
 
 
 def _too_long(text: mmap.mmap | bytes) -> Iterator[str]:
-    """Yield the reason for each array with more numbers than VTK reads of it, or than there can be.
+    """Yield the reason for each array with more numbers than VTK reads of it, or than can be.
 
     Of the corners of cells it makes room for as many as their last offset says.
     """

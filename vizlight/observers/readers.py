@@ -556,7 +556,7 @@ def places_on_bar(colors: Colors, table: pv.LookupTable, *, lit: bool) -> Array:
 
 
 def _on_bar(colors: Colors, table: pv.LookupTable, *, lit: bool) -> tuple[Array, int, int]:
-    """Return the logarithms of the likelihoods of the colours of a bar, and how many there are.
+    """Return the logarithms of the likelihoods of the colours of a bar, and their number.
 
     The last number is the first of these colours: 1 where one stands below the bar, else 0.
     """

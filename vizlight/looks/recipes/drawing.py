@@ -215,8 +215,9 @@ class Drawing:
             if isinstance(first, Step) and first.path == "render.several_views":
                 if step.arguments[1:] != (0,):
                     continue
-                surface, (toward, *_) = first.arguments  # type: ignore[misc]
-                assert isinstance(surface, Step)
+                surface, eyes = first.arguments
+                assert isinstance(surface, Step) and isinstance(eyes, list | tuple)
+                toward = eyes[0]
                 framed = first.keywords.get("around", surface)
                 camera = Step("camera", camera.path, framed, toward, **camera.keywords)
                 layer = dataclasses.replace(layer, mesh=surface)
@@ -392,7 +393,7 @@ class Case:
     def ends_of_body(self, camera: Step) -> Sequence[str]:
         """Return the letters of the sides of a body at the left and the right of the picture.
 
-        They are L, R, P, A, I and S; there are none where no axis runs across the picture, and of
+        They are L, R, P, A, I and S; none where no axis runs across the picture, and of
         other data.
         """
         eye = camera.run()

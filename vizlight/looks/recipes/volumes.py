@@ -414,7 +414,7 @@ def _is_compact(case: Case, array: Named) -> bool:
 
 
 def _cut_open(case: Case) -> Drawing | None:
-    """Draw the body in a scan cut open toward the eye, None where there is no body in air."""
+    """Draw the body in a scan cut open toward the eye, None without a body in air."""
     array, wishes = case.needed_array, case.wishes
     if not _is_scan(case, array) or not _is_gray(case, array):
         return None
