@@ -266,7 +266,7 @@ def test_a_title_replaces_the_words_above_a_picture_but_not_the_unit(tmp_path):
     look = vizlight.look(ball(p=lambda x, y, z: x), title="Pressure")
     assert look.key[0]["title"] == "Pressure"
     assert "Pressure" in look.save(tmp_path / "a.html").read_text("utf-8")
-    assert vizlight.look(pv.Cube()).key[0]["title"] == "1 × 1 × 1"
+    assert vizlight.look(pv.Cube()).key[0]["title"] == "size 1 × 1 × 1"
     assert vizlight.look(pv.Cube(), title="A cube").key[0]["title"] == "A cube"
     assert not vizlight.look(pv.Cube(), title="").key
     mesh = ball(p=lambda x, y, z: x)
@@ -350,9 +350,9 @@ def test_every_rule_can_be_reached():
 def test_a_surface_without_data_has_the_name_of_its_file_and_its_sizes_as_its_title(tmp_path):
     pv.Cone().save(tmp_path / "bracket.v2.stl")
     script = vizlight.look(tmp_path / "bracket.v2.stl", size=SIZE).script()
-    assert 'title="bracket; 1 ×' in script
+    assert 'title="bracket; size 1 ×' in script
     # Without a name it has its sizes alone.
-    assert 'title="2 × 4 × 6"' in vizlight.look(pv.Box((0, 2, 0, 4, 0, 6)), size=SIZE).script()
+    assert 'title="size 2 × 4 × 6"' in vizlight.look(pv.Box((0, 2, 0, 4, 0, 6)), size=SIZE).script()
     assert 'title="surface"' in vizlight.look(pv.Sphere(), "shape", size=SIZE).script()
 
 

@@ -114,7 +114,7 @@ def test_a_picture_has_the_views_that_are_asked_for(tmp_path):
     for block in blocks:
         middle = np.subtract(block.center, camera.focal_point)
         assert np.abs(middle[2]) < camera.parallel_scale
-    assert look.key[0]["title"] == "40 × 20 × 12"
+    assert look.key[0]["title"] == "size 40 × 20 × 12"
     assert look.mesh.n_cells == part.n_cells
     for name in ("page.html", "turn.mp4"):
         with pytest.raises(ValueError, match="view: expected one view for"):

@@ -216,7 +216,8 @@ class Drawing:
                 if step.arguments[1:] != (0,):
                     continue
                 surface, eyes = first.arguments
-                assert isinstance(surface, Step) and isinstance(eyes, list | tuple)
+                assert isinstance(surface, Step)
+                assert isinstance(eyes, list | tuple)
                 toward = eyes[0]
                 framed = first.keywords.get("around", surface)
                 camera = Step("camera", camera.path, framed, toward, **camera.keywords)

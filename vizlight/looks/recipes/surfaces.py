@@ -212,7 +212,7 @@ def _size_of(case: Case) -> str:
     unit = georeference.unit_of(case.data.run())
     words = meaning.written(unit) if meaning.metres(unit) else ""
     sizes = case.surface.run().bounds_size
-    return f"{' × '.join(f'{size:.4g}' for size in sizes)} {words}".rstrip()
+    return f"size {' × '.join(f'{size:.4g}' for size in sizes)} {words}".rstrip()
 
 
 def plane(case: Case) -> Drawing:
