@@ -54,6 +54,18 @@ def test_what_is_no_datum(name, values):
     assert of(**{name: values}).arrays == ()
 
 
+def test_rows_that_are_counted_and_normals_are_no_data_of_points():
+    cloud = pv.PolyData(np.random.default_rng(0).random((40, 3)))
+    # The numbers begin anew where tables are joined.
+    cloud["row"] = np.r_[np.arange(25.0), np.arange(15)]
+    cloud["NX"], cloud["NY"], cloud["NZ"] = cloud.points.T.copy()
+    cloud["grade"] = cloud.points[:, 0] ** 2
+    cloud["every second"] = 2 * np.arange(40)
+    names = [array.name for array in Contents(cloud).arrays]
+    assert names == ["grade", "every second"]
+    assert Contents(cloud).named("row").role == "values"
+
+
 def test_labels_are_kinds_and_scans_are_values():
     grid = pv.ImageData(dimensions=(40, 40, 40))
     x, y, z = grid.points.T

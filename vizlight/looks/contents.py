@@ -50,6 +50,11 @@ _TABLE_WORDS = {
     "edges", "vertex", "vertices", "elem", "center", "centre", "centroid", "mesh", "in", "on",
     "of", "d", "connectivity", "links",
 }  # fmt: skip
+#: Names of the components of normals.
+_NORMALS = {"nx", "ny", "nz"}
+#: Least share of the rows of an array that are one more than the row before, where it counts rows
+#: of tables joined one below the other, and fewest rows.
+COUNTED, FEWEST_COUNTED = 0.9, 10
 #: Names of other tables: the tangents of glTF belong to textures, and PyVista's splines have their
 #: length.
 _TABLES = {"TANGENT", "arc_length", "gmsh:bounding_entities", "gmsh:dim_tags"}
@@ -296,6 +301,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
             # of a map that has no other array.
             regions = mesh.n_arrays == len(mesh.field_data) + 1 and _are_regions(mesh, values)
             named = not meaning.flags(mesh, name) and not regions
+            if named and _is_beside(mesh, name, values):
+                continue
             array = _described(name, values, of_cells=of_cells, named=named)
             said = _words_of(mesh, name)
             if array is not None and array.role == "values" and meaning.flags(mesh, name):
@@ -330,6 +337,7 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         for names in ([] if is_section else meaning.components(mesh))
         if ",".join(names) not in mesh.array_names
         and not all(map(_is_table, names))
+        and not _NORMALS.issuperset(map(str.lower, names))
         # Coordinates and numbers of cells along the axes are no vectors.
         and set(names) != _affine(mesh, names)
     ]
@@ -345,7 +353,9 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         kinds = array.role == "kinds" and not own
         words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
         static = of_file and _OF_GRID.search(words) is not None
-        static |= array.name in of_place or array.name.startswith("_")
+        # Heights of points that are active are shown as data.
+        is_height = array.role == "heights" and array.name in active
+        static |= (array.name in of_place and not is_height) or array.name.startswith("_")
         static |= not _OF_ERRORS.isdisjoint(_words(array.name)) or array.name.lower() in _OF_PARTS
         is_inactive = array.name not in active
         return (kinds, static, is_inactive, array.name in parts, array.of_cells != kinds)
@@ -400,8 +410,6 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         return None
     if named and (_is_table(name) or name in _TABLES):
         return None
-    if named and words[0] == "unnamed" and np.array_equal(values, np.arange(len(values))):
-        return None
     lower = name.lower()
     if are_colors(values):
         # A file whose colours are all alike has none to show.
@@ -431,6 +439,26 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     else:
         role = "heights" if ground else "values"
     return Named(name, role, of_cells, distinct, low, high)
+
+
+def _is_beside(mesh: pv.DataSet, name: str, values: Raw) -> bool:
+    """Return whether an array is a component of normals, or counts rows without a name or points.
+
+    Numbers of cells may show an order.
+    """
+    if name.lower() in _NORMALS:
+        return _NORMALS.issubset(map(str.lower, mesh.array_names))
+    is_plain = mesh.max_cell_dimensionality < 1 or _words(name)[0] == "unnamed"
+    return is_plain and _count_rows(values)
+
+
+def _count_rows(values: Raw) -> bool:
+    """Return whether whole numbers rise by 1 from row to row, but for a few new beginnings."""
+    if values.ndim != 1 or values.dtype.kind not in "fiu" or len(values) < FEWEST_COUNTED:
+        return False
+    steps = np.diff(values.astype(np.float64))
+    new = steps != 1
+    return bool(values[0] == np.round(values[0]) and new.mean() <= 1 - COUNTED)
 
 
 def _are_numbers(words: list[str]) -> bool:
