@@ -482,6 +482,7 @@ def decide(data: object, wishes: Wishes) -> Look:
         notes = [*notes, *words]
         step, contents = look_options.charted(step, contents, wishes)
         step, contents = look_options.laid_flat(step, contents, wishes)
+        step, contents = look_options.with_heights(step, contents, wishes)
         rule, case = _chosen(step, contents, wishes)
         wide = replace(case, wishes=replace(wishes, wide=case.is_wide))
         return _decided(rule, wide, notes)
