@@ -11,7 +11,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.maps import MOST_SPAN
-from vizlight.mesh import blocks, meaning, records, stresses
+from vizlight.mesh import blocks, georeference, meaning, records, stresses
 from vizlight.vtk.arrays import are_colors
 from vizlight.vtk.cells import dimensions
 
@@ -97,6 +97,9 @@ _OF_GRID = re.compile(
     r"(^|[^a-z])(mask|mapfac\w*|map (scale )?factor|coriolis|(sin|cos)alpha|cell[ _]area"
     r"|area[ _]of[ _]grid[ _]cell|angle between|angle of (the )?grid|grid_angle\w*|grid angle)"
 )
+#: Directions, by unit and words, and what tells how a vehicle with instruments moves.
+_OF_DIRECTION = re.compile(r"heading|azimuth|direction|orientation|bearing|course")
+_OF_PLATFORM = re.compile(r"(^|[^a-z])(platform_|profile_(index|direction)|distance_over_ground)")
 #: Words of names of errors of other arrays, and names of the ends of parts of drill holes.
 _OF_ERRORS = {"error", "errors", "err", "stderr", "uncertainty", "residual", "residuals"}
 _OF_PARTS = {"from", "to"}
@@ -342,8 +345,6 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         and set(names) != _affine(mesh, names)
     ]
     active = (mesh.active_scalars_name, mesh.active_vectors_name)
-    of_file = meaning.MEANING in mesh.field_data
-
     parts = {name for vector in joined for name in vector.name.split(",")}
     of_place = _affine(mesh, [array.name for array in described if array.role != "kinds"])
 
@@ -351,16 +352,33 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         # An active array of kinds with names, such as elements, is the best.
         own = array.name in active and bool(meaning.flags(mesh, array.name))
         kinds = array.role == "kinds" and not own
-        words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
-        static = of_file and _OF_GRID.search(words) is not None
         # Heights of points that are active are shown as data.
         is_height = array.role == "heights" and array.name in active
-        static |= (array.name in of_place and not is_height) or array.name.startswith("_")
-        static |= not _OF_ERRORS.isdisjoint(_words(array.name)) or array.name.lower() in _OF_PARTS
+        static = (array.name in of_place and not is_height) or _is_secondary(mesh, array)
         is_inactive = array.name not in active
         return (kinds, static, is_inactive, array.name in parts, array.of_cells != kinds)
 
     return tuple(sorted([*described, *joined], key=rank))
+
+
+def _is_secondary(mesh: pv.DataSet, array: Named) -> bool:
+    """Return whether an array is shown if no other is: of a grid, a platform, a place or an error.
+
+    Directions are such too, since 0 and 360 degrees are one, and heights of stations on a map.
+    """
+    words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
+    unit = meaning.of(mesh).arrays.get(array.name, {}).get("units", "")
+    is_direction = unit.lower().startswith("deg") and _OF_DIRECTION.search(words) is not None
+    is_of_station = array.role == "heights" and mesh.max_cell_dimensionality < 2
+    return (
+        array.name.startswith("_")
+        or array.name.lower() in _OF_PARTS
+        or not _OF_ERRORS.isdisjoint(_words(array.name))
+        or (meaning.MEANING in mesh.field_data and _OF_GRID.search(words) is not None)
+        or is_direction
+        or _OF_PLATFORM.search(words) is not None
+        or (is_of_station and georeference.has_degrees(mesh))
+    )
 
 
 def _affine(mesh: pv.DataSet, names: Sequence[str]) -> set[str]:
