@@ -208,6 +208,17 @@ def test_the_bar_of_a_map_of_mercator_has_the_length_on_the_earth(latitude):
     assert drawn * math.cos(math.radians(latitude)) == pytest.approx(length, rel=2e-3)
 
 
+def test_a_map_with_corners_that_have_no_place_has_a_graticule(recwarn):
+    """As the earth from a satellite, whose extent has corners that it does not see."""
+    pytest.importorskip("rasterio")
+    side = 5.4e6
+    mesh = pv.ImageData(dimensions=(3, 3, 1), spacing=(side, side, 1), origin=(-side, -side, 0))
+    mesh.field_data["unit"] = ["metre"]
+    mesh.field_data["projection"] = ["+proj=geos +h=35785831 +lon_0=-75 +sweep=x +ellps=GRS80"]
+    assert graticule(mesh, 2e5).n_cells > 0
+    assert not recwarn.list
+
+
 def test_a_chart_on_its_side_has_its_parallels_below():
     """North to the left: the words of parallels are east of the map, those of meridians north."""
     mesh = charted(-76, -68, -55, -18, 0.5)

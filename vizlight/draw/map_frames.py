@@ -327,8 +327,10 @@ def _graticule(sheet: charts.MapSheet, size: float) -> list[tuple[Array, str, bo
     if not is_around:
         # Their words stand at the lower side, which may be shorter.
         corners = sheet.plane.forward(np.array([[west, south], [east, south]]))
-        long = float(np.linalg.norm(corners[1] - corners[0])) / georeference.METRES
-        wide = max(wide, 0.8 * degrees * (east - west) / long)
+        # The corners of the earth as a satellite sees it have no place.
+        if np.isfinite(corners).all():
+            long = float(np.linalg.norm(corners[1] - corners[0])) / georeference.METRES
+            wide = max(wide, 0.8 * degrees * (east - west) / long)
     meridians = ticks(west, east, wide, "EW", MOST_AROUND if is_around else MOST)
     parallels = [tick for tick in ticks(south, north, degrees, "NS") if abs(tick[0]) < 90]
     # Not all meridians meet at a pole.

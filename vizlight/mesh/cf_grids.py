@@ -498,7 +498,12 @@ class _Reader:
         return mesh
 
     def _without_places(self) -> list[str]:
-        """Return words for values in a list whose places may be those of a mesh in another file."""
+        """Return words for series of times, or for values in a list whose mesh may be elsewhere."""
+        times = {dim for dim, (letter, _) in self.letters.items() if letter == "t"}
+        series = [name for name, _ in self._of_lists(times)]
+        if series and all(self.file[name].ndim == 1 for name in self.file.data_vars):
+            count = f"{len(series)} series of times, such as {series[-1]!r}"
+            return [f"it has {count}, without places: draw them with matplotlib"]
         dims = [dim for dim in self.letters if re.fullmatch(_LISTS, dim, re.IGNORECASE)]
         return [
             f"{name!r} are values along {dim!r} without places: if another file has their mesh, "
