@@ -155,7 +155,7 @@ def _columns(
 def _without_end(rows: list[list[str]], separator: str) -> tuple[list[list[str]], list[str]]:
     """Return rows without the last ones that are shorter and begin with a word, and these as lines.
 
-    Programs of flow write there with which step a table was made: ``EXT_ITER= 600``.
+    Programs of flow name the step of a table so, as in ``EXT_ITER= 600``.
     """
     count = len(rows)
     while count > 1 and len(rows[count - 1]) < len(rows[0]) and _is_word(rows[count - 1][0]):
