@@ -11,7 +11,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.maps import MOST_SPAN
-from vizlight.mesh import blocks, georeference, meaning, records, stresses
+from vizlight.mesh import blocks, georeference, meaning, molecules, records, stresses
 from vizlight.vtk.arrays import are_colors
 from vizlight.vtk.cells import dimensions
 
@@ -466,8 +466,9 @@ def _is_beside(mesh: pv.DataSet, name: str, values: Raw) -> bool:
     """
     if name.lower() in _NORMALS:
         return _NORMALS.issubset(map(str.lower, mesh.array_names))
-    is_plain = mesh.max_cell_dimensionality < 1 or _words(name)[0] == "unnamed"
-    return is_plain and _count_rows(values)
+    # Residues of one atom each are numbered too.
+    is_cloud = mesh.max_cell_dimensionality < 1 and not molecules.is_polymer(mesh)
+    return (is_cloud or _words(name)[0] == "unnamed") and _count_rows(values)
 
 
 def _count_rows(values: Raw) -> bool:
