@@ -90,6 +90,17 @@ def test_heights_are_blue_below_0_and_lighter_toward_the_coast():
         maps.heights(5.0, 5.0)
 
 
+@pytest.mark.parametrize("low", [-100.0, 0.0])
+def test_a_level_sea_is_blue(low):
+    table, usual = maps.heights(low, 300.0, level_sea=True), maps.heights(low, 300.0)
+    blue, green = np.asarray(table.map_value(0.0))[[2, 1]]
+    assert blue > green
+    assert usual.map_value(0.0)[1] > usual.map_value(0.0)[2]
+    # That step alone differs.
+    differ = np.any(np.asarray(table.values) != np.asarray(usual.values), axis=1)
+    assert np.flatnonzero(differ).tolist() == [int(-low / (300 - low) * 256)]
+
+
 def test_bands_have_a_step_at_each_level_and_black_lines_are_seen_on_them():
     table = maps.bands([1.0, 2.0], (0.0, 3.0))
     colors = np.asarray(table.values)[:, :3] / 255

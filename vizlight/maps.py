@@ -93,7 +93,7 @@ _GROUND = LinearSegmentedColormap.from_list(
 )
 
 
-def heights(low: float, high: float, /) -> pv.LookupTable:
+def heights(low: float, high: float, /, *, level_sea: bool = False) -> pv.LookupTable:
     """Return a lookup table for heights: blue below 0, and green over tan to white above.
 
     No colour is dark, since a shadow on it dims it. The sea is darker where it is deeper.
@@ -102,6 +102,8 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
     ----------
     low, high : float
         Ends of the heights, in the unit of the mesh.
+    level_sea : bool, default: False
+        Whether the step of colours that holds 0 is blue too, as for heights that are 0 at sea.
 
     Returns
     -------
@@ -127,10 +129,14 @@ def heights(low: float, high: float, /) -> pv.LookupTable:
     table = pv.LookupTable(n_values=256)
     # The middles of the 256 steps.
     values = low + (high - low) * (np.arange(256) + 0.5) / 256
+    level_sea = _check.boolean("level_sea", level_sea)
     coast, sea = max(low, 0.0), values < 0
+    if level_sea:
+        sea |= values - (high - low) / 512 <= 0
     colors = np.empty((256, 4))
     if sea.any():
-        colors[sea] = _SEA((values[sea] - low) / (min(high, 0.0) - low))
+        deepest = min(high, 0.0) - low
+        colors[sea] = _SEA(np.minimum((values[sea] - low) / deepest, 1.0) if deepest > 0 else 1.0)
     if not sea.all():
         colors[~sea] = _GROUND((values[~sea] - coast) / (high - coast))
     table.values = np.round(255 * colors).astype(np.uint8)

@@ -1,5 +1,8 @@
 """Frames of maps: round degrees in words, bars of round lengths, arrows, and nothing on data."""
 
+import dataclasses
+import math
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -189,6 +192,37 @@ def test_maps_on_which_lengths_are_alike_have_a_bar():
     corners = np.asarray(frame(charted(6, 9, 45, 47), 5e3).points, dtype=float)
     after = count("50 km") + 4 + count("N")
     assert np.ptp(corners[-after - 4 : -after, 0]) == pytest.approx(50e3)
+
+
+@pytest.mark.parametrize("latitude", [0, 40, -60])
+def test_the_bar_of_a_map_of_mercator_has_the_length_on_the_earth(latitude):
+    """Mercator's lengths are those on the earth times the secant of the latitude."""
+    north = 6371000 * math.asinh(math.tan(math.radians(latitude)))
+    mesh = pv.ImageData(dimensions=(11, 9, 1), spacing=(1e3, 1e3, 1), origin=(5e4, north - 4e3, 0))
+    mesh.field_data["unit"] = ["metre"]
+    mesh.field_data["projection"] = ["+proj=merc +lon_0=0 +R=6371000"]
+    corners = np.asarray(frame(mesh, 100.0).points, dtype=float)
+    # A quarter of the width at the most, which is 10 km, 7.7 km and 5 km on the earth.
+    length = 1e3 if latitude else 2e3
+    after = count(f"{length / 1e3:g} km") + 4 + count("N")
+    drawn = np.ptp(corners[-after - 4 : -after, 0])
+    assert drawn * math.cos(math.radians(latitude)) == pytest.approx(length, rel=2e-3)
+
+
+def test_a_map_with_corners_that_have_no_place_has_a_graticule(monkeypatch):
+    """As the earth from a satellite, whose extent has corners that PROJ puts at infinity."""
+    pytest.importorskip("rasterio")
+    mesh = sheet(1.08e7, 1.08e7, unit="metre", origin=(-5.4e6, -5.4e6, 0))
+    mesh.field_data["projection"] = ["+proj=geos +h=35785831 +lon_0=-75 +sweep=x +ellps=GRS80"]
+    seen = charts.sheet(mesh)
+
+    def forward(places):
+        rows = seen.plane.forward(places)
+        return np.where(np.isfinite(rows), rows, np.inf)
+
+    plane = dataclasses.replace(seen.plane, forward=forward)
+    monkeypatch.setattr(charts, "sheet", lambda _: dataclasses.replace(seen, plane=plane))
+    assert graticule(mesh, 2e5).n_cells > 0
 
 
 def test_a_chart_on_its_side_has_its_parallels_below():

@@ -6,7 +6,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight.looks.contents import Contents, Named, sorted_arrays
-from vizlight.mesh import meaning
+from vizlight.mesh import georeference, meaning
 
 
 def of(**arrays):
@@ -53,6 +53,44 @@ def test_roles(name, values, role):
 )
 def test_what_is_no_datum(name, values):
     assert of(**{name: values}).arrays == ()
+
+
+def test_rows_that_are_counted_and_normals_are_no_data_of_points():
+    cloud = pv.PolyData(np.random.default_rng(0).random((40, 3)))
+    # The numbers begin anew where tables are joined.
+    cloud["row"] = np.r_[np.arange(25.0), np.arange(15)]
+    cloud["NX"], cloud["NY"], cloud["NZ"] = cloud.points.T.copy()
+    cloud["grade"] = cloud.points[:, 0] ** 2
+    cloud["every second"] = 2 * np.arange(40)
+    names = [array.name for array in Contents(cloud).arrays]
+    assert names == ["grade", "every second"]
+    assert Contents(cloud).named("row").role == "values"
+
+
+def test_directions_platforms_and_places_of_stations_come_last():
+    stations = pv.PolyData(np.random.default_rng(0).random((40, 3)) * [30, 20, 0])
+    random = np.random.default_rng(1).random((6, 40))
+    names = ("elevation", "heading", "DIR", "pitch", "salinity", "T")
+    for name, values in zip(names, 300 * random, strict=True):
+        stations[name] = values
+    said = meaning.Meaning()
+    said.add_array("heading", {"standard_name": "platform_orientation", "units": "degrees"})
+    said.add_array("DIR", {"long_name": "wind direction", "units": "degrees"})
+    said.add_array("pitch", {"standard_name": "platform_pitch_angle", "units": "degrees"})
+    meaning.attach(stations, said)
+    stations.field_data[georeference.UNIT] = [georeference.DEGREE]
+    arrays = Contents(stations).arrays
+    assert [array.name for array in arrays] == [
+        "salinity",
+        "T",
+        "elevation",
+        "heading",
+        "DIR",
+        "pitch",
+    ]
+    # A direction that is alone is shown.
+    alone = of(DIR=rising)
+    assert [array.name for array in alone.arrays] == ["DIR"]
 
 
 def test_labels_are_kinds_and_scans_are_values():
@@ -167,8 +205,6 @@ def test_labels_need_not_be_in_the_middle_of_an_image():
 
 
 def test_heights_in_kelvin_are_values():
-    from vizlight.mesh import meaning
-
     image = pv.ImageData(dimensions=(5, 5, 1))
     image["elevation"] = np.linspace(240, 310, 25)
     assert Contents(image).arrays[0].role == "heights"

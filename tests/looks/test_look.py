@@ -806,3 +806,25 @@ def test_a_note_on_the_last_step_has_its_date(tmp_path):
     xr.Dataset({"t": (("time", "lat", "lon"), rows)}, coords).to_netcdf(tmp_path / "a.nc")
     notes = vizlight.look(tmp_path / "a.nc", size=SIZE).notes
     assert notes[0].startswith("time 2017-07-14 02:40, the last of 2 steps")
+
+
+def test_points_of_a_layer_have_the_colours_of_their_heights():
+    """As a lidar in the air measures them, whose intensity is noise from place to place."""
+    random = np.random.default_rng(0)
+    x, y = random.random((2, 3000)) * [[200], [150]]
+    ground = pv.PolyData(np.column_stack([x, y, 0.1 * x + 15 * np.sin(y / 30)]))
+    bare = vizlight.look(ground)
+    assert bare.array == "Elevation"
+    assert [key["title"] for key in bare.key] == ["Elevation"]
+    assert bare.key[0]["clim"] == pytest.approx(ground.bounds[4:], rel=1e-5)
+    lidar = ground.copy()
+    lidar["intensity"] = random.integers(0, 255, 3000).astype(np.uint16)
+    lidar["classification"] = random.integers(1, 4, 3000).astype(np.uint8)
+    scan = vizlight.look(lidar)
+    assert scan.array == "Elevation"
+    assert {other.array for other in scan.others} == {"intensity", "classification"}
+    assert vizlight.look(lidar, array="intensity").array == "intensity"
+    # Other data count more, and a body is no layer.
+    lidar["grade"] = random.random(3000)
+    assert vizlight.look(lidar).array in ("grade", "intensity")
+    assert vizlight.look(pv.PolyData(random.random((3000, 3)))).array is None

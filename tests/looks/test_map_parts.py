@@ -229,6 +229,17 @@ def test_a_map_on_which_nothing_moves_has_no_movie(name):
         vizlight.look(chart(60, 40), size=SIZE).steps(name)
 
 
+def test_heights_that_are_0_at_sea_have_coasts_and_a_blue_sea():
+    land = chart(60, 40, name="elevation")
+    land["elevation"] = np.maximum(1000 * land["elevation"], 0)
+    assert np.mean(land["elevation"] == 0) > 0.1
+    shown = vizlight.look(land, size=SIZE)
+    assert "coasts" in paths(shown)
+    assert "level_sea=True" in shown.script()
+    bed = chart(60, 40, name="elevation")
+    assert "coasts" not in paths(vizlight.look(bed, size=SIZE))
+
+
 @pytest.mark.slow
 @pytest.mark.opengl
 def test_a_page_has_the_coasts_and_the_frame(tmp_path):

@@ -41,6 +41,19 @@ def test_a_long_tail_of_many_values_is_seen_to_its_end():
     assert not any(shown.clipped)
 
 
+def test_long_tails_on_both_sides_lie_beyond_the_ends():
+    """As derivatives have near a sharp edge: Student's distribution of one degree of freedom."""
+    values = np.random.default_rng(0).standard_t(1, 4000)
+    shown = range_shown(values)
+    inner = np.ptp(np.percentile(values, (5, 95)))
+    assert inner <= shown.high - shown.low < 1.3 * inner
+    assert shown.clipped == (True, True)
+    assert "where most values are" in shown.words("adjoint")
+    # Tails of many values that end soon are seen to their ends.
+    short = np.concatenate([RANDOM.normal(0, 1, 3000), RANDOM.uniform(-12, 12, 1000)])
+    assert not any(range_shown(short).clipped)
+
+
 def test_properties_of_rock_over_decades_have_a_logarithmic_bar():
     values = np.random.default_rng(0).lognormal(4, 2, 4000)
     shown = range_shown(values, decades=True)

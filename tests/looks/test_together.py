@@ -116,7 +116,7 @@ def test_files_of_one_command_are_one_picture(tmp_path, capsys):
 
 def test_blocks_of_a_file_are_drawn_each_by_its_rule(tmp_path):
     cloud = pv.PolyData(np.random.default_rng(3).uniform(-1, 1, (40, 3)))
-    cloud["q"] = np.arange(40.0)
+    cloud["q"] = np.arange(40.0) ** 2
     path = tmp_path / "mixed.vtm"
     pv.MultiBlock({"ball": ball(0), "lines": lines(), "cloud": cloud}).save(path)
     look = vizlight.look(path, size=SIZE)

@@ -627,6 +627,13 @@ def test_the_way_to_read_grib_and_zarr(tmp_path, name, package, monkeypatch):
         vizlight.read(tmp_path / name)
 
 
+def test_series_of_times_are_refused_as_such():
+    time = ("time", np.arange(4.0), {"units": "days since 2000-01-01"})
+    rain = {f"rain_{i}": ("time", np.arange(4.0) + i) for i in range(3)}
+    with pytest.raises(ValueError, match=r"it has 3 series of times, such as 'rain_2', without"):
+        vizlight.read(xr.Dataset(rain, {"time": time}))
+
+
 def test_values_in_a_list_are_no_image():
     nodes = xr.Dataset({"sst": (("nz", "nod2"), np.zeros((4, 30)))})
     with pytest.raises(ValueError, match="no variable on a grid of two or three axes"):

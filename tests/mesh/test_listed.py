@@ -139,6 +139,43 @@ def test_a_track_across_the_date_line_has_the_places_of_its_times():
     assert mesh["t"].tolist() == [1, 2]
 
 
+def glider():
+    """Return a glider that goes down and up, 0.1 degrees to the east at 60 north, then north."""
+    down = 50 * (1 - np.cos(np.linspace(0, 20, 41)))
+    lon = 179.95 + np.r_[np.linspace(0, 0.1, 21), np.full(20, 0.1)]
+    lat = 60 + np.r_[np.zeros(21), np.linspace(0, 0.1, 21)[1:]]
+    of_time = {
+        "heading": (down**2 % 360, {"standard_name": "platform_orientation", "units": "degrees"}),
+        "salinity": (34 + np.sin(down), {"units": "1e-3"}),
+        "temperature": (20 - down**2 / 1000, {"units": "Celsius"}),
+        "depth": (down, {"units": "m", "positive": "down"}),
+        "lon": ((lon + 180) % 360 - 180, {"units": "degrees_east"}),
+        "lat": (lat, {"units": "degrees_north"}),
+    }
+    variables = {name: ("time", rows, words) for name, (rows, words) in of_time.items()}
+    times = {"time": ("time", np.arange(41.0), {"units": "hours since 2000-01-01"})}
+    return xr.Dataset(variables, times, {"featureType": "trajectory"})
+
+
+def test_a_track_with_depths_is_a_section_along_it():
+    file = glider()
+    mesh = vizlight.read(file)
+    np.testing.assert_allclose(mesh.points[:, 1], -file["depth"].values, atol=1e-4)
+    degree = np.radians(6_371_008.8)
+    east = 0.1 * degree * np.cos(np.radians(60))
+    assert mesh.points[20, 0] == pytest.approx(east, rel=1e-4)
+    assert mesh.points[40, 0] == pytest.approx(east + 0.1 * degree, rel=1e-4)
+    titles = [scale.title for scale in meaning.of(mesh).scales]
+    assert titles == ["distance along the track", "depth"]
+    shown = vizlight.look(file)
+    assert shown.array == "temperature"
+    assert [other.array for other in shown.others] == ["salinity", "heading"]
+    # At one depth it is a line on a map, of which the north is up.
+    level = vizlight.look(file.assign(depth=file["depth"] * 0 + 15))
+    assert level.mesh.bounds_size[0] < 1
+    assert tuple(level.view.up) == (0, 1, 0)
+
+
 def test_corners_of_scrip_are_told_by_their_names():
     data = by_cell(1.0, "degrees")
     names = {"clon": "grid_center_lon", "clat": "grid_center_lat"}

@@ -142,6 +142,7 @@ def test_a_mesh_without_meaning():
         ("m s-1", "m/s"),
         ("kg m^-3", "kg/m³"),
         ("m2 s-2", "m²/s²"),
+        ("m+2 s-2", "m²/s²"),
         ("K", "K"),
         ("m/s", "m/s"),
         ("meters", "m"),

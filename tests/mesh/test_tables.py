@@ -6,6 +6,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight.files import FileError
+from vizlight.mesh import meaning
 
 pytestmark = pytest.mark.usefixtures("without_trial")
 
@@ -33,6 +34,38 @@ def test_longitudes_are_a_map_with_decimal_commas(tmp_path):
     np.testing.assert_array_equal(mesh.points, [(10.5, 50, 0), (11, 51.25, 0)])
     assert mesh.field_data["unit"][0] == "degree"
     assert mesh["t (K)"].tolist() == [280, 281.5]
+
+
+@pytest.mark.parametrize("name", ["", "Unnamed: 0"])
+def test_the_numbers_of_the_rows_of_a_data_frame_are_no_values(name, tmp_path):
+    rows = "".join(f"{7 * i},{i},{i * i},0,{3 + i % 2}.5\n" for i in range(20))
+    mesh = vizlight.read(written(tmp_path / "a.csv", f"{name},x,y,z,grade\n{rows}"))
+    assert mesh.point_data.keys() == ["index", "grade"]
+    assert vizlight.look(mesh).array == "grade"
+
+
+def test_words_of_few_kinds_are_kinds(tmp_path):
+    rows = "".join(f"{i},{i * i},{'granite' if i % 3 else 'salt'},name {i}\n" for i in range(20))
+    path = written(tmp_path / "a.csv", f"x,y,rock,label\n{rows}5,7,,last\n")
+    with pytest.warns(UserWarning, match="left out are columns of text: label$"):
+        mesh = vizlight.read(path)
+    assert meaning.flags(mesh, "rock") == {0: "granite", 1: "salt"}
+    assert mesh["rock"][:4].tolist() == [1, 0, 0, 1]
+    assert np.isnan(mesh["rock"][-1])
+    assert vizlight.look(mesh).array == "rock"
+
+
+def test_lines_of_text_at_the_end_are_left_out_with_a_note(tmp_path):
+    text = '"ID", "x", "y", "p q"\n0, 1, 2, 3\n1, 4, 5, 6\n\nEXT_ITER= 600\nDRAG=, 0.5\n'
+    words = "left out are 2 lines of text at its end, such as 'EXT_ITER= 600'"
+    with pytest.warns(UserWarning, match=words):
+        mesh = vizlight.read(written(tmp_path / "a.csv", text))
+    np.testing.assert_array_equal(mesh.points[:, :2], [(1, 2), (4, 5)])
+    assert mesh["p q"].tolist() == [3, 6]
+    # A row that was cut off, or a line between rows, is a damage.
+    for damaged in ("x,y,z\n1,2,3\n4,5\n", "x,y,z\n1,2,3\nEXT= 6\n4,5,6\n"):
+        with pytest.raises(FileError, match="a row has"):
+            vizlight.read(written(tmp_path / "b.csv", damaged))
 
 
 @pytest.mark.parametrize(("text", "words"), [

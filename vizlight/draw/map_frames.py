@@ -106,7 +106,7 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
         parts += _degrees(box, letters, np.rint(turn))
     if sheet is not None:
         parts += _around(sheet, letters, turn)
-    metres = _bar_unit(mesh, is_measured=sheet is not None)
+    metres = _bar_unit(mesh, sheet)
     if metres and (straight or not is_degrees):
         if parts:
             # Below the words of degrees.
@@ -178,7 +178,7 @@ def has_bar(mesh: pv.DataSet) -> bool:
     """
     sheet = charts.sheet(mesh)
     is_known = georeference.has_degrees(mesh) or sheet is not None
-    return is_known and _bar_unit(mesh, is_measured=sheet is not None) > 0
+    return is_known and _bar_unit(mesh, sheet) > 0
 
 
 def _checked(mesh: pv.DataSet, letters: float, up: Sequence[float]) -> tuple[float, Array]:
@@ -190,13 +190,18 @@ def _checked(mesh: pv.DataSet, letters: float, up: Sequence[float]) -> tuple[flo
     return letters, np.array([[y, -x], [x, y]])
 
 
-def _bar_unit(mesh: pv.DataSet, *, is_measured: bool) -> float:
-    """Return the length of x in metres on a map that has a bar, 0 on others."""
+def _bar_unit(mesh: pv.DataSet, sheet: charts.MapSheet | None) -> float:
+    """Return the length of x in metres on a map that has a bar, 0 on others.
+
+    On a map whose projection is known that is the length on the earth in the middle of the map.
+    """
     metres = meaning.metres(georeference.unit_of(mesh)) or 0.0
     if georeference.has_degrees(mesh):
         metres = georeference.METRES * math.cos(math.radians(mesh.center[1]))
-    elif not is_measured:
+    elif sheet is None:
         return metres
+    else:
+        metres = sheet.unit
     return metres if max(mesh.bounds_size[:2]) * metres < LIKE_LENGTHS else 0.0
 
 
@@ -322,8 +327,10 @@ def _graticule(sheet: charts.MapSheet, size: float) -> list[tuple[Array, str, bo
     if not is_around:
         # Their words stand at the lower side, which may be shorter.
         corners = sheet.plane.forward(np.array([[west, south], [east, south]]))
-        long = float(np.linalg.norm(corners[1] - corners[0])) / georeference.METRES
-        wide = max(wide, 0.8 * degrees * (east - west) / long)
+        # The corners of the earth as a satellite sees it have no place.
+        if np.isfinite(corners).all():
+            long = float(np.linalg.norm(corners[1] - corners[0])) / georeference.METRES
+            wide = max(wide, 0.8 * degrees * (east - west) / long)
     meridians = ticks(west, east, wide, "EW", MOST_AROUND if is_around else MOST)
     parallels = [tick for tick in ticks(south, north, degrees, "NS") if abs(tick[0]) < 90]
     # Not all meridians meet at a pole.

@@ -11,7 +11,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.maps import MOST_SPAN
-from vizlight.mesh import blocks, meaning, records, stresses
+from vizlight.mesh import blocks, georeference, meaning, molecules, records, stresses
 from vizlight.vtk.arrays import are_colors
 from vizlight.vtk.cells import dimensions
 
@@ -50,6 +50,11 @@ _TABLE_WORDS = {
     "edges", "vertex", "vertices", "elem", "center", "centre", "centroid", "mesh", "in", "on",
     "of", "d", "connectivity", "links",
 }  # fmt: skip
+#: Names of the components of normals.
+_NORMALS = {"nx", "ny", "nz"}
+#: Least share of the rows of an array that are one more than the row before, where it counts rows
+#: of tables joined one below the other, and fewest rows.
+COUNTED, FEWEST_COUNTED = 0.9, 10
 #: Names of other tables: the tangents of glTF belong to textures, and PyVista's splines have their
 #: length.
 _TABLES = {"TANGENT", "arc_length", "gmsh:bounding_entities", "gmsh:dim_tags"}
@@ -95,6 +100,9 @@ _OF_GRID = re.compile(
     r"(^|[^a-z])(mask|mapfac\w*|map (scale )?factor|coriolis|(sin|cos)alpha|cell[ _]area"
     r"|area[ _]of[ _]grid[ _]cell|angle between|angle of (the )?grid|grid_angle\w*|grid angle)"
 )
+#: Directions, by unit and words, and what tells how a vehicle with instruments moves.
+_OF_DIRECTION = re.compile(r"heading|azimuth|direction|orientation|bearing|course")
+_OF_PLATFORM = re.compile(r"(^|[^a-z])(platform_|profile_(index|direction)|distance_over_ground)")
 #: Words of names of errors of other arrays, and names of the ends of parts of drill holes.
 _OF_ERRORS = {"error", "errors", "err", "stderr", "uncertainty", "residual", "residuals"}
 _OF_PARTS = {"from", "to"}
@@ -313,6 +321,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
             # of a map that has no other array.
             regions = mesh.n_arrays == len(mesh.field_data) + 1 and _are_regions(mesh, values)
             named = not meaning.flags(mesh, name) and not regions
+            if named and _is_beside(mesh, name, values):
+                continue
             array = _described(name, values, of_cells=of_cells, named=named)
             said = _words_of(mesh, name)
             if array is not None and array.role == "values" and meaning.flags(mesh, name):
@@ -347,12 +357,11 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         for names in ([] if is_section else meaning.components(mesh))
         if ",".join(names) not in mesh.array_names
         and not all(map(_is_table, names))
+        and not _NORMALS.issuperset(map(str.lower, names))
         # Coordinates and numbers of cells along the axes are no vectors.
         and set(names) != _affine(mesh, names)
     ]
     active = (mesh.active_scalars_name, mesh.active_vectors_name)
-    of_file = meaning.MEANING in mesh.field_data
-
     parts = {name for vector in joined for name in vector.name.split(",")}
     of_place = _affine(mesh, [array.name for array in described if array.role != "kinds"])
 
@@ -362,15 +371,34 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         # An active array of kinds with names, such as elements, is the best.
         own = array.name in active and bool(meaning.flags(mesh, array.name))
         kinds = array.role == "kinds" and not own
-        words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
-        static = of_file and _OF_GRID.search(words) is not None
-        static |= array.name in of_place or array.name.startswith("_")
-        static |= not _OF_ERRORS.isdisjoint(_words(array.name)) or array.name.lower() in _OF_PARTS
+        # Heights of points that are active are shown as data.
+        is_height = array.role == "heights" and array.name in active
+        static = (array.name in of_place and not is_height) or _is_secondary(mesh, array)
         is_inactive = array.name not in active
         is_noise = noise.keys() >= {*array.name.split(",")}
         return (is_noise, kinds, static, is_inactive, array.name in parts, array.of_cells != kinds)
 
     return tuple(sorted([*described, *joined], key=rank))
+
+
+def _is_secondary(mesh: pv.DataSet, array: Named) -> bool:
+    """Return whether an array is shown if no other is: of a grid, a platform, a place or an error.
+
+    Directions are such too, since 0 and 360 degrees are one, and heights of stations on a map.
+    """
+    words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
+    unit = meaning.of(mesh).arrays.get(array.name, {}).get("units", "")
+    is_direction = unit.lower().startswith("deg") and _OF_DIRECTION.search(words) is not None
+    is_of_station = array.role == "heights" and mesh.max_cell_dimensionality < 2
+    return (
+        array.name.startswith("_")
+        or array.name.lower() in _OF_PARTS
+        or not _OF_ERRORS.isdisjoint(_words(array.name))
+        or (meaning.MEANING in mesh.field_data and _OF_GRID.search(words) is not None)
+        or is_direction
+        or _OF_PLATFORM.search(words) is not None
+        or (is_of_station and georeference.has_degrees(mesh))
+    )
 
 
 def _affine(mesh: pv.DataSet, names: Sequence[str]) -> set[str]:
@@ -419,8 +447,6 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     if named and (words[0] == "vtk" or (_are_numbers(words) and not of_kinds)):
         return None
     if named and (_is_table(name) or name in _TABLES):
-        return None
-    if named and words[0] == "unnamed" and np.array_equal(values, np.arange(len(values))):
         return None
     lower = name.lower()
     if are_colors(values):
@@ -481,6 +507,27 @@ def _noise(mesh: pv.DataSet, names: Sequence[str]) -> dict[str, float]:
         for name, size in sizes.items()
         if low[name] < 0 < high[name] and size < NOISE * min(usual, 1.0)
     }
+
+
+def _is_beside(mesh: pv.DataSet, name: str, values: Raw) -> bool:
+    """Return whether an array is a component of normals, or counts rows without a name or points.
+
+    Numbers of cells may show an order.
+    """
+    if name.lower() in _NORMALS:
+        return _NORMALS.issubset(map(str.lower, mesh.array_names))
+    # Residues of one atom each are numbered too.
+    is_cloud = mesh.max_cell_dimensionality < 1 and not molecules.is_polymer(mesh)
+    return (is_cloud or _words(name)[0] == "unnamed") and _count_rows(values)
+
+
+def _count_rows(values: Raw) -> bool:
+    """Return whether whole numbers rise by 1 from row to row, but for a few new beginnings."""
+    if values.ndim != 1 or values.dtype.kind not in "fiu" or len(values) < FEWEST_COUNTED:
+        return False
+    steps = np.diff(values.astype(np.float64))
+    new = steps != 1
+    return bool(values[0] == np.round(values[0]) and new.mean() <= 1 - COUNTED)
 
 
 def _are_numbers(words: list[str]) -> bool:

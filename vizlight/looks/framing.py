@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from vizlight._types import Array, Bools, Indices, Vector
 from vizlight.looks.contents import LAYER, Contents
-from vizlight.mesh import meaning
+from vizlight.mesh import georeference, meaning
 from vizlight.mesh.creases import creases
 from vizlight.vtk.cells import connectivity
 
@@ -155,7 +155,8 @@ def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
     right = np.cross(up, toward)
     points = _finite(mesh.points)
     flat = np.stack([points @ right, points @ np.asarray(up)], axis=1)
-    if len(flat) > 2:
+    # Meridians and parallels of a map in degrees are beside it where north is up.
+    if len(flat) > 2 and not (axis == 2 and georeference.has_degrees(mesh)):
         _, values, axes = np.linalg.svd(flat - flat.mean(axis=0), full_matrices=False)
         if values[0] > STRIP * values[1] and np.ptp(flat[:, 1]) > np.ptp(flat[:, 0]) / STRIP:
             # The long side to the right, and up on the side where up was.

@@ -498,6 +498,7 @@ def decide(data: object, wishes: Wishes) -> Look:
         notes = [*notes, *words]
         step, contents = look_options.charted(step, contents, wishes)
         step, contents = look_options.laid_flat(step, contents, wishes)
+        step, contents = look_options.with_heights(step, contents, wishes)
         rule, case = _chosen(step, contents, wishes)
         case = views.of_case(case)
         bar = views.unit_of_bar(case)

@@ -59,6 +59,10 @@ PICTURE = (
 #: Shares of the size of a solid within which the longest displacement is seen, and the share to
 #: which a shorter one is taken.
 SEEN, MOVED = (0.02, 0.3), 0.05
+#: Height of a layer of points, as a share of its shorter side, fewest points of one, and arrays
+#: that every lidar measures beside them.
+LAYER_OF_POINTS, FEWEST = 0.5, 100
+OF_LIDAR = {"intensity", "classification"}
 
 
 def checked(options: Mapping[str, Given]) -> Keywords:
@@ -338,6 +342,23 @@ def laid_flat(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Con
     heights = Step("heights", ".elevation", step)
     flat = Step("flat", map_parts.FLAT, heights, origin=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0))
     return flat, replace(contents, mesh=flat.run(), raster=True)
+
+
+def with_heights(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Contents]:
+    """Return the step that gives points of a layer their heights, and contents.
+
+    Points with data other than those of every lidar, and those that options light, stay.
+    """
+    sizes = contents.sides
+    is_layer = 0 < sizes[2] < LAYER_OF_POINTS * sizes[:2].min()
+    is_free = wishes.question == "auto" and not wishes.light and wishes.make_scene is None
+    names = {array.name for array in contents.arrays}
+    if contents.dimension or contents.flat_axis is not None or not (is_free and is_layer):
+        return step, contents
+    if wishes.array is not None or not names <= OF_LIDAR or contents.mesh.n_points < FEWEST:
+        return step, contents
+    heights = Step("heights", ".elevation", step)
+    return heights, replace(contents, mesh=heights.run())
 
 
 def check_flow(file: object, mesh: pv.DataSet, name: str | None) -> None:

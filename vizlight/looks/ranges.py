@@ -15,6 +15,8 @@ from vizlight.maps import TWO_SIDED
 #: share up to which they are a few, and the shares of the bar that more of them take, on one side
 #: of the others and on both.
 FENCE, MOST_OUTSIDE, LEAST_FREED, FEW, FREED_BY_MANY = 4.5, 0.1, 0.32, 0.002, (0.75, 0.45)
+#: Percentiles of values between two tails of many values far outside.
+BETWEEN_TAILS = (5, 95)
 #: Ratio of the 98th percentile to the median from which lengths have a logarithmic bar, and the
 #: ratio of its ends at most.
 SKEWED, DECADES = 10.0, 100.0
@@ -156,6 +158,8 @@ def range_shown(
     step = (fences[1] - fences[0]) / 10 if first < median < third else 0.0
     below, above = values < fences[0], values > fences[1]
     cut = bool(below.any()), bool(above.any())
+    if step and all(cut) and np.mean(below | above) > MOST_OUTSIDE:
+        return _between_tails(values)
     least = np.isclose(values, low, atol=0.01 * (fences[1] - fences[0]))
     apart = least.sum() > max(APART * len(values), 0.5 * below.sum())
     is_apart = cut[0] and bool(apart)
@@ -169,6 +173,20 @@ def range_shown(
         _rounded(fences[1] if cut[1] else high, step, np.ceil),
     )
     return Range(*ends, clipped=cut, apart=is_apart)
+
+
+def _between_tails(values: Array) -> Range:
+    """Return the range of values with long tails of many on both sides: that between the tails.
+
+    Of all values, where these take less of the bar than is freed by others.
+    """
+    low, high = float(values.min()), float(values.max())
+    first, last = map(float, np.percentile(values, BETWEEN_TAILS))
+    if last - first > (1 - FREED_BY_MANY[0]) * (high - low):
+        return Range(*even_ends(low, high))
+    step = (last - first) / 10
+    ends = _rounded(first, step, np.floor), _rounded(last, step, np.ceil)
+    return Range(*ends, clipped=(low < ends[0], high > ends[1]))
 
 
 def _of_decades(value: float) -> list[float]:

@@ -498,7 +498,12 @@ class _Reader:
         return mesh
 
     def _without_places(self) -> list[str]:
-        """Return words for values in a list whose places may be those of a mesh in another file."""
+        """Return words for series of times, or for values in a list whose mesh may be elsewhere."""
+        times = {dim for dim, (letter, _) in self.letters.items() if letter == "t"}
+        series = [name for name, _ in self._of_lists(times)]
+        if series and all(self.file[name].ndim == 1 for name in self.file.data_vars):
+            count = f"{len(series)} series of times, such as {series[-1]!r}"
+            return [f"it has {count}, without places: draw them with matplotlib"]
         dims = [dim for dim in self.letters if re.fullmatch(_LISTS, dim, re.IGNORECASE)]
         return [
             f"{name!r} are values along {dim!r} without places: if another file has their mesh, "
@@ -646,8 +651,13 @@ class _Reader:
         self.single.pop(of.dim, None)
         scale, unit = self._unit(of.x, of.y)
         x, y = (scale * np.asarray(self.file[name].values, np.float64) for name in (of.x, of.y))
+        tracks = listed.tracks(self.file, of.dim)
+        if tracks is not None and unit and not tracks.any():
+            line = self._section(of, x, y, unit)
+            if line is not None:
+                return line
         mesh, kept = listed.points(x, y, degrees=unit == georeference.DEGREE)
-        tracks = listed.tracks(self.file, of.dim) if isinstance(mesh, pv.PolyData) else None
+        tracks = tracks if isinstance(mesh, pv.PolyData) else None
         is_earth = isinstance(mesh, pv.PolyData) and unit == georeference.DEGREE and tracks is None
         around = listed.around_earth(x[kept], y[kept]) if is_earth else None
         words = f"x {of.x!r} and y {of.y!r} of each value"
@@ -666,6 +676,28 @@ class _Reader:
                 self.said.notes.append(f"points, since no cells of {of.dim!r} are known")
             rows_of = {of.dim: (mesh.point_data, lambda rows: rows[kept])}
         return self._with_values(mesh, rows_of, (unit, words))
+
+    def _section(self, of: listed.Listed, x: Array, y: Array, unit: str) -> pv.PolyData | None:
+        """Return the only track with its values in the section along it, None without heights."""
+        named = listed.height_of_track(self.file, of.dim)
+        if named is None:
+            return None
+        name, heights = named
+        mesh, kept = listed.section(x, y, heights, degrees=unit == georeference.DEGREE)
+        if not mesh.bounds_size[0] > 0 or not mesh.bounds_size[1] > 0:
+            return None
+        is_below = mesh.center[1] < 0
+        up = meaning.AxisScale("depth" if is_below else "height", "m", -1.0 if is_below else 1.0)
+        self.said.scales = [meaning.AxisScale("distance along the track", "m"), up]
+        words = f"x distance in m along the track {of.x!r} and {of.y!r}, y height in m by {name!r}"
+        rows_of: _RowsOf = {of.dim: (mesh.point_data, lambda rows: rows[kept])}
+        mesh = self._with_values(mesh, rows_of, ("", words))
+        # Its heights are those of the axis.
+        mesh.point_data.pop(name, None)
+        warm = [other for other in mesh.point_data if meaning.is_temperature(mesh, other)]
+        # Instruments are listed in any order, and most tracks are those of temperatures.
+        mesh.set_active_scalars(next(iter(warm), None))
+        return mesh
 
     def _unit(self, x: str, y: str) -> tuple[float, str]:
         """Return the factor and the unit of coordinates: metre, degree or an empty text."""

@@ -12,13 +12,15 @@ import pyvista as pv
 from matplotlib.path import Path
 
 from vizlight import _check
-from vizlight._types import Array, Bools, Raw
+from vizlight._types import Array, Bools, Foreign, Raw
 from vizlight.mesh import blocks, georeference, globes, meaning, projections
 from vizlight.mesh.georeference import PROJECTION
 from vizlight.mesh.projections import Projection
 
 #: Degrees over which a projection is differentiated.
 STEP = 1e-4
+#: Share by which lengths on the earth and on a ball may differ.
+ROUND = 0.01
 #: Distance beyond the outline of a map that counts as on it, as a share of the map's size.
 EDGE = 1e-3
 #: Places along each side of a map at which its longitudes and latitudes are looked at.
@@ -220,6 +222,21 @@ class MapSheet:
         """Longer side of the map."""
         return float(np.ptp(self.outline, axis=0).max())
 
+    @cached_property
+    def unit(self) -> float:
+        """Length on the earth, in metres, of a unit of x in the middle of the map.
+
+        That of the plane where both differ by less than the earth from a ball.
+        """
+        middle = self.outline.min(axis=0) / 2 + self.outline.max(axis=0) / 2
+        step = np.array([self.size * STEP, 0.0])
+        ends = self.plane.inverse(np.stack([middle - step, middle + step]) * self.metres)
+        east, north = _turns(ends[1, 0] - ends[0, 0]), ends[1, 1] - ends[0, 1]
+        degrees = math.hypot(east * math.cos(math.radians(ends[:, 1].mean())), north)
+        unit = degrees * georeference.METRES / (2 * step[0])
+        is_other = math.isfinite(unit) and abs(unit / self.metres - 1) > ROUND
+        return unit if is_other else self.metres
+
     def holds(self, places: Array) -> Bools:
         """Return which places are within the outline or on it."""
         inside: Bools = Path(self.outline).contains_points(places, radius=EDGE * self.size)
@@ -295,7 +312,7 @@ class MapSheet:
         return bool(abs(turns) > georeference.AROUND / 2)
 
 
-def _turns(degrees: Array) -> Array:
+def _turns(degrees: Foreign) -> Foreign:
     """Return differences of longitudes, from -180 to 180."""
     return (degrees + 180.0) % georeference.AROUND - 180.0
 

@@ -11,7 +11,7 @@ import pyvista as pv
 import scipy
 
 from vizlight._types import Array, Bools, Foreign, Indices, Raw
-from vizlight.mesh import globes, unrolled
+from vizlight.mesh import georeference, globes, meaning, polylines, unrolled
 
 #: Dimensions of cells of several faces, and of their corners.
 CELLS = ("cell", "corner")
@@ -325,6 +325,58 @@ def tracks(file: Foreign, dim: str) -> Indices | None:
         if variable.dims == (dim,) and (has_id or "instance_dimension" in variable.attrs):
             return np.unique(variable.values, return_inverse=True)[1]
     return np.zeros(size, np.intp)
+
+
+def height_of_track(file: Foreign, dim: str) -> tuple[str, Array] | None:
+    """Return the name and the heights in metres, above 0 or below it, of the values of a track.
+
+    None where the dataset has none that differ, in a unit of length.
+
+    Parameters
+    ----------
+    file : xarray.Dataset
+        Dataset.
+    dim : str
+        Dimension of the list.
+    """
+    for key, variable in file.variables.items():
+        standard, way = (variable.attrs.get(word, "") for word in ("standard_name", "positive"))
+        metres = meaning.metres(str(variable.attrs.get("units", "")))
+        is_height = way in ("up", "down") or standard in ("depth", "height", "altitude")
+        if (
+            variable.dims != (dim,)
+            or variable.dtype.kind not in "iuf"
+            or not (is_height and metres)
+        ):
+            continue
+        sign = -1.0 if way == "down" or (standard == "depth" and way != "up") else 1.0
+        heights = sign * metres * np.asarray(variable.values, dtype=np.float64)
+        if np.isfinite(heights).any() and np.nanmin(heights) < np.nanmax(heights):
+            return str(key), heights
+    return None
+
+
+def section(x: Array, y: Array, heights: Array, *, degrees: bool) -> tuple[pv.PolyData, Indices]:
+    """Return a track as a line over its length in metres, and the row of the list of each point.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (N,)
+        Coordinates.
+    heights : ndarray, shape (N,)
+        Heights in metres, which are y of the line.
+    degrees : bool
+        Whether the coordinates are longitude and latitude, in degrees; else in metres.
+    """
+    kept = np.flatnonzero(np.isfinite(x) & np.isfinite(y) & np.isfinite(heights))
+    x, y = np.diff(x[kept]), y[kept]
+    if degrees:
+        x = (x + HALF_WAY) % (2 * HALF_WAY) - HALF_WAY
+        x = x * np.cos(np.radians((y[1:] + y[:-1]) / 2)) * georeference.METRES
+        y = y * georeference.METRES
+    along = np.append(0.0, np.cumsum(np.hypot(x, np.diff(y))))
+    points = np.column_stack([along, heights[kept], np.zeros(len(kept))])
+    return polylines.polydata(points, np.array([0, len(kept)])), kept
 
 
 def with_tracks(points: pv.PolyData, numbers: Indices) -> pv.PolyData:

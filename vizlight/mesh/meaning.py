@@ -608,8 +608,8 @@ _IN_DECADES = re.compile(r"perm[_ ]?[xyz\d]*|(.*[^a-z])?(permeab|conductiv|resis
 _PREFIXES = {"": "", "kilo": "k", "hecto": "h", "centi": "c", "milli": "m"}
 _SYMBOLS = {"meter": "m", "metre": "m", "second": "s", "gram": "g", "pascal": "Pa", "kelvin": "K"}
 _WRITTEN_OUT = re.compile("(kilo|hecto|centi|milli)?(meter|metre|second|gram|pascal|kelvin)s?")
-#: A factor of a unit, such as m, s-1, s**-1 or m^2.
-_FACTOR = re.compile(r"([A-Za-z%]+)(?:\*\*|\^)?(-?[1-3])?")
+#: A factor of a unit, such as m, s-1, s**-1, m^2 or m+2.
+_FACTOR = re.compile(r"([A-Za-z%]+)(?:\*\*|\^)?([-+]?[1-3])?")
 
 
 def is_in_decades(mesh: pv.DataSet, name: str) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight._types import Array
+from vizlight._types import AnyArray, Array, Foreign
 from vizlight.mesh import georeference, meaning
 
 #: Ends of names of tables, and what may stand between their columns.
@@ -25,6 +25,11 @@ _DEGREES = (("longitude", "latitude", ""), ("lon", "lat", ""), ("long", "lat", "
 #: Unit after a name, and words for a number that is missing.
 _UNIT = re.compile(r"\s*[(\[].*$")
 _MISSING = {"", "na", "n/a", "nan", "null", "none", "-"}
+#: Least rows in the mean of a kind that a column of text names.
+LEAST_OF_KIND = 2
+#: Name of a first column without one, by which data frames number their rows, and the name that
+#: they give to it when they read it again.
+INDEX, _UNNAMED = "index", re.compile(r"(Unnamed: 0)?")
 
 
 def read(path: Path) -> pv.PolyData:
@@ -35,11 +40,11 @@ def read(path: Path) -> pv.PolyData:
     ValueError
         If its first line names none, or it has no rows.
     """
-    columns, left_out = _columns(path)
+    columns, texts, lines = _columns(path)
     plain = {_UNIT.sub("", name).strip().lower(): name for name in reversed(columns)}
     places = next((names for names in (*_PLACES, *_DEGREES) if {*names[:2]} <= {*plain}), None)
     if places is None:
-        there = ", ".join(map(repr, [*columns, *left_out]))
+        there = ", ".join(map(repr, [*columns, *texts]))
         raise ValueError(
             f"its first line has no names of places (x, y, z or lon, lat) but {there}; name them so"
         )
@@ -52,15 +57,34 @@ def read(path: Path) -> pv.PolyData:
     mesh = pv.PolyData(points[known])
     for name, rows in columns.items():
         mesh.point_data[name] = rows[known]
+    said = meaning.Meaning()
+    left_out = [
+        name for name, words in texts.items() if not _add_kinds(mesh, said, name, words[known])
+    ]
     if places in _DEGREES:
         mesh.field_data[georeference.UNIT] = [georeference.DEGREE]
-        axis_words = ["x longitude in degrees by its name", "y latitude in degrees by its name"]
-        meaning.attach(mesh, meaning.Meaning(axes=axis_words))
+        said.axes = ["x longitude in degrees by its name", "y latitude in degrees by its name"]
+    if said.axes or said.arrays:
+        meaning.attach(mesh, said)
     notes = [f"columns of text: {', '.join(left_out)}"] if left_out else []
     notes += [f"{np.sum(~known)} rows without a place"] if not known.all() else []
+    notes += [f"{len(lines)} lines of text at its end, such as '{lines[0]}'"] if lines else []
     if notes:
         _check.warn(f"file: '{path}': left out are {'; '.join(notes)}")
     return mesh
+
+
+def _add_kinds(mesh: pv.PolyData, said: meaning.Meaning, name: str, words: AnyArray) -> bool:
+    """Add a column of text to points as the numbers of its kinds, and return whether it is few."""
+    missing = np.array([word.lower() in _MISSING for word in words])
+    kinds, numbers = np.unique(words[~missing], return_inverse=True)
+    if not 1 < len(kinds) <= min(meaning.MOST_KINDS, len(words) // LEAST_OF_KIND):
+        return False
+    values = np.full(len(words), np.nan)
+    values[~missing] = numbers
+    mesh.point_data[name] = values
+    said.add_kinds(name, [(i, str(kind), ()) for i, kind in enumerate(kinds)])
+    return True
 
 
 def add(mesh: pv.DataSet, path: Path) -> None:
@@ -75,10 +99,10 @@ def add(mesh: pv.DataSet, path: Path) -> None:
         If it has another number of rows, with both numbers, or is no table.
     """
     try:
-        columns, _ = _columns(path)
+        columns, _, _ = _columns(path)
         sizes = {len(rows) for rows in columns.values()}
         if mesh.n_points not in sizes and _numbers([*columns], comma=False) is not None:
-            columns, _ = _columns(path, named=False)
+            columns, _, _ = _columns(path, named=False)
     except ValueError as error:
         raise ValueError(f"its overlay '{path}' is no table: {error}") from error
     for name, rows in columns.items():
@@ -88,20 +112,24 @@ def add(mesh: pv.DataSet, path: Path) -> None:
         mesh.point_data[name] = rows
 
 
-def _columns(path: Path, *, named: bool = True) -> tuple[dict[str, Array], list[str]]:
-    """Return the columns of numbers by their names, and the names of those of text.
+def _columns(
+    path: Path, *, named: bool = True
+) -> tuple[dict[str, Array], dict[str, AnyArray], list[str]]:
+    """Return the columns of numbers and those of text by their names, and lines at the end.
 
     ``named`` says whether the first line has names.
     """
     with path.open(encoding="utf-8-sig", newline="", errors="replace") as file:
         first = file.readline()
         separator = max(SEPARATORS, key=first.count)
-        names = next(csv.reader([first.lstrip("# ")], delimiter=separator), [])
-        rows = [row for row in csv.reader(file, delimiter=separator) if any(map(str.strip, row))]
+        form: Foreign = {"delimiter": separator, "skipinitialspace": True}
+        names = next(csv.reader([first.lstrip("# ")], **form), [])
+        rows = [row for row in csv.reader(file, **form) if any(map(str.strip, row))]
     if not named:
         rows = [names, *rows]
         single = len(names) == 1
         names = [path.stem if single else f"{path.stem} {i + 1}" for i in range(len(names))]
+    rows, lines = _without_end(rows, separator)
     if rows and all(len(row) == len(names) + 1 and not row[-1].strip() for row in rows):
         # Some programs end each row, but not the first line, by a separator.
         rows = [row[:-1] for row in rows]
@@ -110,15 +138,33 @@ def _columns(path: Path, *, named: bool = True) -> tuple[dict[str, Array], list[
         raise ValueError(f"a row has {len(uneven)} columns for {len(names)} names: {uneven}")
     if not rows:
         raise ValueError("it has no rows below its first line")
+    if len(names) > 1 and _UNNAMED.fullmatch(names[0].strip()):
+        names[0] = INDEX
     columns: dict[str, Array] = {}
-    of_text = []
+    texts: dict[str, AnyArray] = {}
     for i, name in enumerate(names):
-        values = _numbers([row[i].strip() for row in rows], comma=separator == ";")
+        cells = [row[i].strip() for row in rows]
+        values = _numbers(cells, comma=separator == ";")
         if values is None:
-            of_text.append(name.strip())
+            texts[name.strip()] = np.array(cells)
         else:
             columns[name.strip() or f"column {i + 1}"] = values
-    return columns, of_text
+    return columns, texts, lines
+
+
+def _without_end(rows: list[list[str]], separator: str) -> tuple[list[list[str]], list[str]]:
+    """Return rows without the last ones that are shorter and begin with a word, and these as lines.
+
+    Programs of flow name the step of a table so, as in ``EXT_ITER= 600``.
+    """
+    count = len(rows)
+    while count > 1 and len(rows[count - 1]) < len(rows[0]) and _is_word(rows[count - 1][0]):
+        count -= 1
+    return rows[:count], [separator.join(row).strip() for row in rows[count:]]
+
+
+def _is_word(cell: str) -> bool:
+    return _numbers([cell], comma=True) is None
 
 
 def _numbers(cells: list[str], *, comma: bool) -> Array | None:

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
 #: Colour map where nothing is lit, and that of values on lit surfaces.
 LIGHTNESS, ON_SURFACES = "viridis", "vizlight.surface"
+#: Least share of heights that are 0 where they are those of a sea.
+LEVEL_SEA = 0.1
 #: Colour maps of bands, and of amounts on a ground, and the colour of this.
 ON_BANDS, ON_GROUND, GROUND = "vizlight.bands", "vizlight.amounts", "#fbfbf8"
 #: Those of values around 0 in place of these; on lit surfaces one without dark ends, by Moreland,
@@ -447,6 +449,15 @@ class Case:
         mesh = self.data.run()
         is_placed = not {"crs", georeference.PROJECTION}.isdisjoint(mesh.field_data.keys())
         return self.on_globe or is_placed or georeference.has_degrees(mesh)
+
+    @cached_property
+    def has_level_sea(self) -> bool:
+        """Whether heights on the earth are 0 at sea, which has no depths."""
+        array = self.array
+        if array is None or array.role != "heights" or not self.is_of_earth:
+            return False
+        values = array_of(self.data.run(), array.name)
+        return values is not None and float(np.mean(values == 0)) > LEVEL_SEA
 
     @cached_property
     def on_globe(self) -> bool:

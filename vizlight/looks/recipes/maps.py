@@ -195,10 +195,11 @@ def _without_limits(keywords: Keywords) -> Keywords:
 def _has_coasts(case: Case, *, asked: bool | None) -> bool:
     """Return whether the data are a flat map of the earth that shows no coast of its own: heights.
 
-    Its projection, if it is not in degrees, is known. ``asked`` is whether coasts are asked for,
-    on heights too, None where the data choose.
+    Heights that are 0 at sea show none. Its projection, if it is not in degrees, is known.
+    ``asked`` is whether coasts are asked for, on heights too, None where the data choose.
     """
     heights = not asked and case.array is not None and case.array.role == "heights"
+    heights = heights and not case.has_level_sea
     is_sheet = case.contents.flat_axis == 2 and case.wishes.frame is None
     mesh = case.contents.mesh
     if asked is False or not is_sheet or heights or not georeference.on_earth(mesh):

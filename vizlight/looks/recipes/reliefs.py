@@ -62,7 +62,8 @@ def relief(case: Case) -> Drawing:
     colors = case.wishes.colors
     if "cmap" not in colors:
         ends = colors.get("clim") or range_of(data.run(), array.name)
-        colors = {"cmap": Step("", "vizlight.maps.heights", *ends)}
+        level: Keywords = {"level_sea": True} if case.has_level_sea else {}
+        colors = {"cmap": Step("", "vizlight.maps.heights", *ends, **level)}
     has_holes = not np.isfinite(data.run()[array.name]).all()
     shown = Step("tinted", "vizlight.tint", lit, array.name, **colors)
     drawn: Keywords = {"show_scalar_bar": False}
