@@ -62,6 +62,7 @@ from vizlight.mesh.montages import side_by_side
 from vizlight.mesh.nspace import with_last_coordinate
 from vizlight.mesh.stresses import with_von_mises
 from vizlight.mesh.subdivision import simplices
+from vizlight.mesh.walls import walls
 from vizlight.vtk import messages
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions, used
 from vizlight.vtk.topology import place_numbers
@@ -74,7 +75,7 @@ except ImportError:  # on Windows
 
 __all__ = [
     "FileError", "atoms_in", "backbone", "borders", "creases", "cut_open", "layer_of", "layers",
-    "ligands", "read", "read_parts", "side_by_side", "stretched", "surface_of", "warped",
+    "ligands", "read", "read_parts", "side_by_side", "stretched", "surface_of", "walls", "warped",
     "with_last_coordinate", "with_vectors", "with_von_mises", "without_corner", "without_fills",
     "write_mesh",
 ]  # fmt: skip

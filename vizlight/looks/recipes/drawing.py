@@ -469,8 +469,8 @@ class Case:
             mesh, boxed = self.box, True
         axes = self.axes if boxed else ()
         key: float | None = KEY_SIZE
-        if self.in_room:
-            # A room needs no key, and a mesh of no file has no title.
+        if self.in_room or (self.question == "none" and self.array is None):
+            # A room and a plane without data need no key, and a mesh of no file has no title.
             key = 0.0 if self.is_isosurface or file_named(self.data) else None
             key = 0.0 if self.wishes.picture.get("title") else key
         return self.wishes.camera(mesh, eye, axes=axes, key=key)

@@ -40,8 +40,10 @@ if TYPE_CHECKING:
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
-#: Colour of what is seen face on and has no data, and most cells whose edges are drawn on it.
-GREY, MOST_WITH_EDGES = "#9a9a9a", 5000
+#: Colour of what is seen face on and has no data, and most cells whose edges are drawn.
+LIGHT_GREY, MOST_WITH_EDGES = "#bcbcbc", 5000
+#: Note on the walls of a body in a flow.
+ONLY_WALLS = "the walls inside of the mesh are drawn, its far field is left out"
 #: Opacity of the edges of elements, and outline of a solid before it is displaced.
 FAINT, BEFORE = 0.35, {"color": "#8a8a8a"}
 #: Length in pixels from which isolines on a solid are long, least share of their length in long
@@ -146,7 +148,12 @@ def _undisplaced(case: Case) -> Step | None:
 def _elements(case: Case, mesh: Step) -> Keywords:
     """Return the drawing of edges of the cells that stresses, or values of a solid, belong to."""
     of_cells = case.needed_array.of_cells and case.contents.dimension == 3
-    if not (of_cells or case.contents.is_strained) or mesh.run().n_cells > MOST_WITH_EDGES:
+    return _edges_of_cells(mesh) if of_cells or case.contents.is_strained else {}
+
+
+def _edges_of_cells(mesh: Step) -> Keywords:
+    """Return the drawing of edges of cells, thin and faint, where these are not too many."""
+    if mesh.run().n_cells > MOST_WITH_EDGES:
         return {}
     return {"show_edges": True, "edge_color": DARK, "edge_opacity": FAINT}
 
@@ -183,7 +190,15 @@ def _with_isolines(case: Case, drawing: Drawing) -> Drawing:
 
 
 def surface(case: Case) -> Drawing:
-    """Draw a surface in the light of a question about its shape."""
+    """Draw a surface in the light of a question about its shape, with the edges of its elements.
+
+    Of a mesh that reaches far around a body its walls are drawn.
+    """
+    is_solid = case.contents.dimension == 3 and not isinstance(case.data.run(), pv.ImageData)
+    inner = Step("walls", "files.walls", case.data)
+    if is_solid and case.wishes.surface and inner.run().n_cells:
+        drawing = surface(replace(case, data=inner, contents=Contents(inner.run())))
+        return replace(drawing, words="walls", notes=[*drawing.notes, ONLY_WALLS])
     mesh = case.surface
     camera = case.camera(mesh)
     light = case.wishes.light_of_surface()
@@ -192,6 +207,8 @@ def surface(case: Case) -> Drawing:
     name = case.wishes.part.get("contour")
     words = f"isosurface of {name}" if name else "surface"
     drawn = {"scene": scene, **case.wishes.drawn(light)}
+    if is_solid or case.data.path == inner.path:
+        drawn |= _edges_of_cells(mesh)
     title = words if name else file_named(mesh)
     if name and case.wishes.part.get("level") is not None:
         title = titled(mesh.run(), name, level=case.wishes.part["level"])
@@ -214,10 +231,8 @@ def plane(case: Case) -> Drawing:
     Sizes of cells are shown, near most of the cells, where many differ.
     """
     mesh = case.surface
-    drawn: Keywords = {"color": GREY}
-    if mesh.run().n_cells <= MOST_WITH_EDGES:
-        drawn |= {"show_edges": True, "edge_color": "white"}
-    else:
+    drawn: Keywords = {"color": LIGHT_GREY} | _edges_of_cells(mesh)
+    if mesh.run().n_cells > MOST_WITH_EDGES:
         sized = Step("sized", ".compute_cell_sizes", mesh, length=False, volume=False)
         areas = np.asarray(sized.run()["Area"])
         low, median, high = map(float, np.quantile(areas, (0, 0.5, 1)))
@@ -237,8 +252,11 @@ def plane(case: Case) -> Drawing:
             )
     camera = case.camera(mesh)
     scene = case.wishes.scene("none", camera)
-    layer = Layer(mesh, {"scene": scene} | drawn)
-    return Drawing([layer], camera, scene, case.lit(mesh, scene), "plane")
+    border = Step("borders", "files.borders", mesh)
+    outline = case.strokes([border] if border.run().n_cells else [])
+    layers = [Layer(mesh, {"scene": scene} | drawn), *outline]
+    keys = (TITLE_ALONE | {"title": name},) if (name := file_named(mesh)) else ()
+    return Drawing(layers, camera, scene, case.lit(mesh, scene), "plane", keys)
 
 
 def fur(case: Case) -> Drawing:
