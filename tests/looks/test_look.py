@@ -695,6 +695,15 @@ def test_of_a_mesh_far_around_a_body_its_walls_are_drawn():
     assert look.notes[-1] == "the walls inside of the mesh are drawn, its far field is left out"
 
 
+def test_kinds_that_a_solid_has_inside_alone_are_in_the_title():
+    grid = pv.ImageData(dimensions=(6, 6, 6)).cast_to_unstructured_grid()
+    grid.cell_data["material"] = np.where(np.abs(grid.cell_centers().points - 2.5).max(1) < 1, 7, 1)
+    grid.cell_data["material"][0] = 3
+    look = vizlight.look(grid, size=SIZE)
+    assert look.notes[-1] == "material 7 is inside, where it is not seen"
+    assert look.key[0]["title"] == "material; inside: 7"
+
+
 def test_cells_that_lie_over_others_on_a_flat_mesh_are_no_creases():
     # Columns of a grid of an ocean come again at its seam.
     x, y = np.meshgrid([0.0, 1, 2, 3, 1, 2], np.arange(5.0), indexing="ij")

@@ -7,6 +7,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._types import Bools
+from vizlight.mesh import joining
 from vizlight.vtk.cells import connectivity
 from vizlight.vtk.corners import SHARP
 
@@ -24,9 +25,9 @@ def walls(volume: pv.DataSet, /) -> pv.PolyData:
     """Return the walls of a body inside of a mesh of cells that reaches far around it.
 
     The outer surface is parted at edges between faces that turn by more than 30 degrees. Walls are
-    parts around which the cells lie, and of which none is larger than a fifth of the mesh; where
-    they meet the rest, as a wing meets a plane of symmetry, all of them together are at most a
-    twentieth, and so are the sides of their faces of those of the far field.
+    parts around which the cells lie, and of which none is larger than 0.2 times the mesh; where
+    they meet the rest, as a wing meets a plane of symmetry, all of them together are at most 0.05
+    times the mesh, and so are the sides of their faces of those of the far field.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ def walls(volume: pv.DataSet, /) -> pv.PolyData:
     0
     """
     _check.instance("volume", volume, pv.DataSet, "a mesh of cells")
-    if isinstance(volume, pv.ImageData | pv.RectilinearGrid | pv.PolyData):
+    if not isinstance(volume, pv.UnstructuredGrid | pv.StructuredGrid):
         return pv.PolyData()
     surface = _joined(volume)
     if not surface.n_cells:
@@ -103,15 +104,14 @@ def _joined(volume: pv.DataSet) -> pv.PolyData:
 
 def _faces(surface: pv.PolyData, which: Bools) -> pv.PolyData:
     """Return some faces of a surface."""
-    faces: pv.PolyData = surface.extract_cells(np.flatnonzero(which)).extract_surface(
-        algorithm="dataset_surface"
-    )
+    cells = joining.some_cells(surface, which)
+    faces: pv.PolyData = cells.extract_surface(algorithm="dataset_surface")
     return faces
 
 
 def _are_far(surface: pv.PolyData, inner: Bools) -> bool:
     """Return whether the rest of a surface is far from its inner faces, which may meet it."""
-    faces, rest = (surface.extract_cells(np.flatnonzero(which)) for which in (inner, ~inner))
+    faces, rest = (joining.some_cells(surface, which) for which in (inner, ~inner))
     if not np.isin(faces["vtkOriginalPointIds"], rest["vtkOriginalPointIds"]).any():
         return True
     sides = np.sqrt(np.asarray(surface.compute_cell_sizes(volume=False)["Area"]))

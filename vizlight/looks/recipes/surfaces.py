@@ -111,17 +111,9 @@ def values(case: Case) -> Drawing:
     if array.role == "colors" and (bands := meaning.of(mesh.run()).arrays.get(array.name, {})):
         words = f"{bands['long_name']} as red, green and blue"
     notes = [note] if note else []
-    kinds = kinds_of(mesh.run(), array.name) if array.role == "kinds" else ()
-    shown_kinds = kinds
-    if len(kinds) > MOST_IN_KEY:
-        shown_kinds = kinds_of(mesh.run(), array.name, MOST_IN_KEY)
-    if rest := len(kinds) - len(shown_kinds):
-        notes = [f"{array.name} has {len(kinds)} kinds: the {rest} smallest are grey"]
-        keys = [keys[0] | {"title": f"{keys[0]['title']}; grey: {rest} small ones"}]
-    elif (count := len(kinds)) > MOST_IN_KEY:
-        notes = [f"{array.name} has {count} kinds: colours repeat, and have no key"]
-        title = f"{keys[0]['title']}; {count} kinds"
-        keys = [keys[0] | TITLE_ALONE | {"title": title}]
+    if array.role == "kinds":
+        more, keys = _notes_on_kinds(case, mesh, keys[0])
+        notes = [*notes, *more]
     if sides is None:
         layers = [Layer(mesh, shown), *edges.edges(camera), *case.strokes([outline], **BEFORE)]
     else:
@@ -133,6 +125,35 @@ def values(case: Case) -> Drawing:
     )  # fmt: skip
     is_smooth = array.role == "values" and not array.of_cells and case.contents.dimension == 3
     return _with_isolines(case, drawing) if bent and is_smooth else drawing
+
+
+def _notes_on_kinds(case: Case, mesh: Step, key: Keywords) -> tuple[list[str], list[Keywords]]:
+    """Return notes on the kinds that are not seen or have no colour of their own, and the key."""
+    array, title, notes = case.needed_array, key["title"], list[str]()
+    kinds = kinds_of(mesh.run(), array.name)
+    if hidden := _hidden_kinds(case, array, kinds):
+        notes.append(f"{array.name} {hidden} is inside, where it is not seen")
+        title = f"{title}; inside: {hidden}"
+    count, shown = len(kinds), kinds
+    if count > MOST_IN_KEY:
+        shown = kinds_of(mesh.run(), array.name, MOST_IN_KEY)
+    if rest := count - len(shown):
+        notes.append(f"{array.name} has {count} kinds: the {rest} smallest are grey")
+        return notes, [key | {"title": f"{title}; grey: {rest} small ones"}]
+    if count > MOST_IN_KEY:
+        notes.append(f"{array.name} has {count} kinds: colours repeat, and have no key")
+        return notes, [key | TITLE_ALONE | {"title": f"{title}; {count} kinds"}]
+    return notes, [key | {"title": title}]
+
+
+def _hidden_kinds(case: Case, array: Named, kinds: Sequence[float]) -> str:
+    """Return the names of kinds that a solid has inside of its surface alone, if they are few."""
+    data = case.data.run()
+    if case.contents.dimension != 3 or isinstance(data, pv.ImageData):
+        return ""
+    names = meaning.flags(data, array.name)
+    hidden = [kind for kind in kinds_of(data, array.name) if kind not in kinds]
+    return ", ".join(names.get(kind, f"{kind:g}") for kind in hidden[:MOST_IN_KEY])
 
 
 def _undisplaced(case: Case) -> Step | None:
