@@ -10,6 +10,7 @@ from vizlight._types import Bools
 from vizlight.mesh import joining
 from vizlight.vtk.cells import connectivity
 from vizlight.vtk.corners import SHARP
+from vizlight.vtk.topology import place_numbers
 
 #: Size of a mesh in that of a boundary inside of it, and in that of a wall that meets the rest,
 #: whose faces have to be as much shorter than those of the far field.
@@ -112,7 +113,8 @@ def _faces(surface: pv.PolyData, which: Bools) -> pv.PolyData:
 def _are_far(surface: pv.PolyData, inner: Bools) -> bool:
     """Return whether the rest of a surface is far from its inner faces, which may meet it."""
     faces, rest = (joining.some_cells(surface, which) for which in (inner, ~inner))
-    if not np.isin(faces["vtkOriginalPointIds"], rest["vtkOriginalPointIds"]).any():
+    places, others = (place_numbers(np.asarray(part.points)) for part in (faces, rest))
+    if not np.isin(places, others).any():
         return True
     sides = np.sqrt(np.asarray(surface.compute_cell_sizes(volume=False)["Area"]))
     is_fine = np.median(sides[inner]) * ATTACHED <= sides[~inner].max()
