@@ -271,6 +271,7 @@ OWN = {
     "isolines.isolines": {"mesh": hills, "name": "h", "levels": [0.1, 0.3], "letters": 0.01},
     "creases.creases": {"surface": ball},
     "creases.borders": {"surface": ball},
+    "walls.walls": {"volume": lambda: pv.SolidSphere(inner_radius=0.1, outer_radius=2.0)},
     "cutaways.cut_open": {"volume": block, "name": "v"},
     "cutaways.without_corner": {"volume": block, "name": "v"},
     "molecules.backbone": {"atoms": chain},

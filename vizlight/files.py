@@ -62,6 +62,7 @@ from vizlight.mesh.montages import side_by_side
 from vizlight.mesh.nspace import with_last_coordinate
 from vizlight.mesh.stresses import with_von_mises
 from vizlight.mesh.subdivision import simplices
+from vizlight.mesh.walls import walls
 from vizlight.vtk import messages
 from vizlight.vtk.cells import cell_arrays, check_whole, connectivity, dimensions, used
 from vizlight.vtk.topology import place_numbers
@@ -74,7 +75,7 @@ except ImportError:  # on Windows
 
 __all__ = [
     "FileError", "atoms_in", "backbone", "borders", "creases", "cut_open", "layer_of", "layers",
-    "ligands", "read", "read_parts", "side_by_side", "stretched", "surface_of", "warped",
+    "ligands", "read", "read_parts", "side_by_side", "stretched", "surface_of", "walls", "warped",
     "with_last_coordinate", "with_vectors", "with_von_mises", "without_corner", "without_fills",
     "write_mesh",
 ]  # fmt: skip
@@ -319,7 +320,7 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
         if reason.startswith("its overlay"):
             raise _wrong("overlay", f"values for the points of '{path}'", f"none: {reason}")
         if "CFF Fluent" in reason:  # as VTK says of any other .h5 file
-            reason = "HDF5 of an unknown program; look at a mesh of arrays that h5py reads"
+            reason = _of_hdf(path)
         got, remedy = f"'{path}' ({reason})", foreign_files.way_out(path)
         raise _wrong("file", "a mesh that PyVista reads", got, remedy)
     # After an error VTK gives what it has read so far: a part of a mesh, which looks like a whole.
@@ -337,9 +338,22 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
     return meshes
 
 
+def _of_hdf(path: Path) -> str:
+    """Return the name of the format of an HDF5 file that is not read, and a way to its mesh."""
+    content = path.read_bytes()
+    if b"topology" in content and (b"geometry" in content or b"coordinates" in content):
+        return "a mesh of FEniCS; FEniCS writes a .xdmf file with it: XDMFFile(...).write(mesh)"
+    return "HDF5 of an unknown program; look at a mesh of arrays that h5py reads"
+
+
 def _check_before(path: Path, selection: Selection) -> None:
     """Raise FileError for a file that may end the process inside its reader."""
-    if short := short_files.missing_part(path):
+    if content := other_formats.of_content(path):
+        raise _wrong("file", "a mesh that PyVista reads", f"'{path}' ({content})")
+    short = short_files.missing_part(path)
+    if short == short_files.NO_TECPLOT:
+        raise _wrong("file", "a file of Tecplot", f"'{path}' ({short})")
+    if short:
         raise _damaged(path, short)
     if _trials.are_needed():
         if path.suffix.lower() in GUARDED and not selection.overlays:
@@ -616,7 +630,7 @@ _PACKED_ALIKE = (".img", ".mgh", ".nii", ".tt")
 #: Most bytes that are unpacked: a small file can hold any number of zeros.
 MOST_UNPACKED = 1 << 33
 #: Formats of meshers, whose meshes have the points and edges of the shape beside its cells.
-_MESHERS = (".med", ".mesh", ".meshb", ".msh")
+_MESHERS = (".med", ".mmed", ".mesh", ".meshb", ".msh")
 
 
 def _unpacked(path: Path, read: Callable[[Path], list[pv.DataSet]]) -> list[pv.DataSet]:

@@ -671,6 +671,44 @@ def test_a_plane_of_many_unequal_cells_shows_their_sizes_where_most_are():
     assert vizlight.look(even, size=SIZE).drawing.words == "plane"
 
 
+def test_a_plane_without_data_has_faint_edges_of_cells_a_border_and_the_name_of_its_file(tmp_path):
+    plane = pv.Plane(i_resolution=20, j_resolution=20)
+    plane.clear_data()
+    plane.save(path := tmp_path / "duct.vtp")
+    look = vizlight.look(path, size=SIZE)
+    sheet, border = look.drawing.layers
+    assert pv.Color(sheet.keywords["edge_color"]).float_rgb < (0.5, 0.5, 0.5)
+    assert sheet.keywords["edge_opacity"] < 0.5
+    assert border.mesh.run().n_cells == 80
+    assert look.key[0]["title"] == "duct"
+
+
+def test_a_solid_without_data_has_the_edges_of_its_cells_and_a_surface_has_none():
+    grid = pv.StructuredGrid(*np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"))
+    solid, skin = (
+        vizlight.look(mesh, size=SIZE).drawing.layers[0].keywords
+        for mesh in (grid, grid.extract_surface(algorithm="dataset_surface"))
+    )
+    assert solid["show_edges"]
+    assert "show_edges" not in skin
+
+
+def test_of_a_mesh_far_around_a_body_its_walls_are_drawn():
+    look = vizlight.look(pv.SolidSphere(inner_radius=1.0, outer_radius=9.0), size=SIZE)
+    assert look.drawing.words == "walls"
+    assert look.mesh.length < 4
+    assert look.notes[-1] == "the walls inside of the mesh are drawn, its far field is left out"
+
+
+def test_kinds_that_a_solid_has_inside_alone_are_in_the_title():
+    grid = pv.ImageData(dimensions=(6, 6, 6)).cast_to_unstructured_grid()
+    grid.cell_data["material"] = np.where(np.abs(grid.cell_centers().points - 2.5).max(1) < 1, 7, 1)
+    grid.cell_data["material"][0] = 3
+    look = vizlight.look(grid, size=SIZE)
+    assert look.notes[-1] == "material 7 is inside, where it is not seen"
+    assert look.key[0]["title"] == "material; inside: 7"
+
+
 def test_cells_that_lie_over_others_on_a_flat_mesh_are_no_creases():
     # Columns of a grid of an ocean come again at its seam.
     x, y = np.meshgrid([0.0, 1, 2, 3, 1, 2], np.arange(5.0), indexing="ij")

@@ -548,3 +548,33 @@ def test_cells_of_fluent_are_read_once(tmp_path):
     (tmp_path / "a.cas").write_text(FLUENT)
     mesh = vizlight.read(tmp_path / "a.cas")
     assert (mesh.n_points, mesh.n_cells) == (4, 2)
+
+
+def test_a_file_of_abaqus_may_have_the_name_of_one_of_gmsh(tmp_path):
+    path = tmp_path / "a.msh"
+    path.write_text(
+        "*node, nset=Nall\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n"
+        "*element, type=C3D4, elset=Eall\n1, 1, 2, 3, 4\n"
+    )
+    assert vizlight.read(path).n_cells == 1
+
+
+def test_a_file_of_avs_ucd_may_begin_with_comments(tmp_path):
+    path = tmp_path / "a.ucd"
+    path.write_text("# AVS UCD\n3 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 7 tri 1 2 3\n")
+    mesh = vizlight.read(path)
+    assert (mesh.n_points, mesh.n_cells) == (3, 1)
+    path.write_text("# AVS UCD\n3 1 0 0 0\n1 0 0 0\n")
+    with pytest.raises(files.FileError, match="2 of 5 lines of points and cells"):
+        vizlight.read(path)
+
+
+def test_groups_of_gmsh_have_words_for_titles(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    mesh = meshio.Mesh(
+        np.eye(3), [("triangle", [[0, 1, 2]])],
+        cell_data={"gmsh:physical": [np.array([5])], "gmsh:geometrical": [np.array([1])]},
+    )  # fmt: skip
+    meshio.gmsh.write(tmp_path / "a.msh", mesh, fmt_version="2.2")
+    said = meaning.of(vizlight.read(tmp_path / "a.msh"))
+    assert said.arrays["gmsh:physical"]["long_name"] == "Physical group"

@@ -100,3 +100,10 @@ def test_objects_of_3mf_are_where_their_transforms_put_them(tmp_path):
     assert meaning.line(mesh) == "x, y, z in inch"
     with pytest.raises(FileError, match=r"it names .*'9'.*, which it has not"):
         vizlight.read(written(tmp_path / "a.3mf", second="9"))
+
+
+def test_beams_of_3mf_that_are_left_out_are_counted(tmp_path, monkeypatch):
+    beams = "<beamlattice><beams><beam v1='0' v2='1'/><beam v1='1' v2='2'/></beams></beamlattice>"
+    monkeypatch.setitem(globals(), "MODEL", MODEL.replace("</mesh>", f"{beams}</mesh>"))
+    with pytest.warns(UserWarning, match="the 2 beams of its lattices are left out"):
+        vizlight.read(written(tmp_path / "a.3mf"))

@@ -111,7 +111,9 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
         if parts:
             # Below the words of degrees.
             box[2] = min(points[:, 1].min() for points, _ in parts) - GAP * letters
-        parts += [*_bar(box, letters, metres), *_arrow(box, letters, turn)]
+        # An image of no place on the earth has no north.
+        arrow = [] if meaning.is_photograph(mesh) else _arrow(box, letters, turn)
+        parts += [*_bar(box, letters, metres), *arrow]
     elif turn[1, 1] <= 1 - ALMOST and not (is_degrees and straight):
         parts += _arrow(box, letters, turn)
     return _joined(parts, mesh, turn)
@@ -515,11 +517,16 @@ def _word_of(value: float, step: float, signs: str) -> str:
     return f"{number}°{sign}"
 
 
+#: Units of a bar in metres, the largest first.
+_LENGTHS = ((1e3, "km"), (1.0, "m"), (1e-3, "mm"), (0.0, "m"))
+
+
 def _bar(box: Array, size: float, metres: float) -> list[Part]:
     """Return a bar of a round length below a map, with its words."""
     left, right, bottom, _ = box
     length = round_length(BAR * (right - left) * metres)
-    word = f"{length / 1e3:g} km" if length >= 1e3 else f"{length:g} m"
+    factor, unit = next(pair for pair in _LENGTHS if length >= pair[0])
+    word = f"{length / (factor or 1):g} {unit}"
     high = bottom - (GAP + (DIGIT - THICK) / 2) * size
     end = left + length / metres
     return [

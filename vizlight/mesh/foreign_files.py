@@ -25,6 +25,7 @@ from vizlight.mesh import (
     cf_grids,
     cubes,
     density_maps,
+    dicom,
     file_parts,
     geomview,
     georeference,
@@ -63,7 +64,7 @@ PACKAGES = {
         ("xarray", "formats", cf_grids.NETCDF),
         ("cfgrib", "", cf_grids.GRIB),
         ("zarr", "", cf_grids.ZARR),
-        ("h5py", "formats", (".h5m", ".med")),
+        ("h5py", "formats", (".h5m", ".med", ".mmed")),
         ("rasterio", "maps", georeference.SUFFIXES),
         ("meshio", "formats", (
             ".avs", ".bdf", ".f3grid", ".fem", ".mdpa", ".mesh", ".meshb", ".msh", ".nas", ".post",
@@ -164,8 +165,8 @@ def _of_other(path: Path, time: object, nodata: float | None) -> pv.DataSet | pv
             # VTK's reader leaves out a row, and says nothing of what is missing.
             return georeference.read(path)
         _refuse_narrow(path)
-    if suffix == ".inp" and first_bytes(path, _INP_HEAD).lstrip().startswith(b"*"):
-        # PyVista takes it for the format of AVS.
+    if suffix in (".inp", ".msh") and first_bytes(path, _INP_HEAD).lstrip().startswith(b"*"):
+        # PyVista takes it for the format of AVS, or of gmsh.
         return abaqus.read(path)
     if PACKAGES.get(suffix, ("",))[0] in ("meshio", "h5py") and missing(path) == "":
         return _of_meshio(path)
@@ -269,6 +270,8 @@ def _attach_colors(mesh: pv.PolyData, data: bytes, path: Path) -> None:
     mesh.point_data["color"] = np.rint(np.clip(colors, 0, 255)).astype(np.uint8)
 
 
+#: Words for the arrays of gmsh.
+_GMSH = {"gmsh:physical": "Physical group", "gmsh:geometrical": "Geometrical entity"}
 #: Header of the elements of gmsh in text.
 _ELEMENTS = re.compile(rb"\n\$Elements\r?\n(\d+)(?:[ \t]+(\d+)[ \t]+\d+[ \t]+\d+)?[ \t]*\r?\n")
 
@@ -283,7 +286,7 @@ def _of_meshio(path: Path) -> pv.DataSet:
 
     # The class is replaced for the whole process: meshio makes a console for each message.
     meshio._common.Console, _SAID.texts = _Console, []
-    kinds = meshio.extension_to_filetypes[path.suffix.lower()]
+    kinds = meshio.extension_to_filetypes.get(path.suffix.lower(), ["med"])
     for kind in kinds:
         reader = getattr(meshio, kind)
         try:
@@ -321,6 +324,9 @@ def _of_meshio(path: Path) -> pv.DataSet:
         mesh = pv.from_meshio(data)
     except KeyError as error:
         raise ValueError(f"it has cells {error.args[0]!r}, which VTK has not") from None
+    words = {name: {"long_name": _GMSH[name]} for name in mesh.cell_data if name in _GMSH}
+    if words:
+        meaning.attach(mesh, meaning.Meaning(arrays=words))
     if _SAID.texts:
         more = f" (the first of {len(_SAID.texts)} warnings)" if len(_SAID.texts) > 1 else ""
         _check.warn(f"file: '{path}': {_SAID.texts[0]}{more}")
@@ -422,6 +428,16 @@ def _attach_three(mesh: pv.PolyData, rows: Array, path: Path) -> None:
             f"file: '{path}': the last three columns are left out: they are neither colours from "
             "0 to 255 or from 0 to 1, nor normals of length 1"
         )
+
+
+def _avs_ucd(path: Path) -> pv.DataSet:
+    """Return the mesh of an AVS UCD file, without the comments before its counts."""
+    lines = path.read_bytes().splitlines(keepends=True)
+    with _supervise.folder(path) as folder:
+        draft = folder / "draft.avs"
+        draft.write_bytes(b"".join(line for line in lines if not line.startswith(b"#")))
+        mesh: pv.DataSet = series.unchecked(pv.AVSucdReader(draft))
+    return mesh
 
 
 def _triangles(path: Path) -> pv.PolyData | None:
@@ -610,11 +626,12 @@ _BY_SUFFIX: Mapping[str, Callable[[Path], pv.DataSet | pv.MultiBlock | None]] = 
     ".gro": molecule_files.of_gro, ".mol2": molecule_files.of_mol2,
     ".mol": molecule_files.of_mol, ".sdf": molecule_files.of_mol,
     ".cube": cubes.read, ".dx": cubes.read_dx, ".ply": ply.read, ".su2": su2.read,
+    ".ucd": _avs_ucd,
     ".swc": neurons.read, ".tri": _triangles,
     **dict.fromkeys(density_maps.SUFFIXES, density_maps.read),
     ".3ds": studio_3ds.read, ".dae": xml_scenes.read_collada, ".3mf": xml_scenes.read_3mf,
     **dict.fromkeys(scene_files.SUFFIXES, scene_files.read),
-    **dict.fromkeys((".nhdr", ".nrrd"), scans.read_nrrd),
+    **dict.fromkeys((".nhdr", ".nrrd"), scans.read_nrrd), ".dcm": dicom.read,
     **dict.fromkeys((".mha", ".mhd"), scans.read_meta),
     **dict.fromkeys(seismic.SUFFIXES, seismic.read),
     **dict.fromkeys(tables.SUFFIXES, tables.read),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from vizlight._words import message
@@ -24,6 +25,9 @@ WAYS: dict[tuple[str, ...], str] = {
         "gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{name}' -o '{stem}.stl'",
     (".dcd", ".trr", ".xtc", ".psf", ".prmtop", ".tpr", ".pdbqt", ".mmtf", ".bcif"):
         "write a state of the molecule as .pdb, .cif or .xyz, for example by MDAnalysis or VMD",
+    (".geojson", ".topojson", ".gpkg", ".shp", ".kml"):
+        "GDAL makes a raster of a number of its features: "
+        "gdal_rasterize -a NAME -ts 1000 1000 '{name}' '{stem}.tif'",
     (".blend", ".fbx", ".ifc", ".x3d"):
         "Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'",
 }  # fmt: skip
@@ -31,6 +35,38 @@ USUAL_WAY = (
     "convert it to .vtu, .vti, .ply, .stl, .glb, .tif or .nc, or save a mesh of its numbers by "
     "PyVista: PolyData(points, faces) of a surface, ImageData of an image or a volume"
 )
+#: Formats that share the end of a name with one that is read, by their first bytes.
+CONTENTS: dict[tuple[str, ...], tuple[tuple[re.Pattern[bytes], str], ...]] = {
+    (".mesh",): ((
+        re.compile(rb"MFEM (NC |NURBS |INLINE )?mesh"),
+        "a mesh of MFEM; MFEM and GLVis write a .vtu or .vtk file of it",
+    ),),
+    (".asc",): ((
+        re.compile(rb"\s*(;[^\n]*\s+)*\("),
+        "a neuron of Neurolucida; morph-tool makes a .swc of it: "
+        "morph-tool convert file '{name}' '{stem}.swc'",
+    ),),
+    (".dat", ".tec"): (
+        (re.compile(rb"\s*(ASCII|BINARY) [^\n]*\n!File started"),
+         "a result of Elmer; ElmerSolver writes .vtu by ResultOutputSolve"),
+        (re.compile(rb"\xec\x2b\x08\0|\0\x08\x2b\xec"),
+         "a restart of SU2; SU2_SOL writes a .vtu of it"),
+    ),
+}  # fmt: skip
+#: Bytes of a file that are looked at.
+_HEAD = 1 << 12
+
+
+def of_content(path: Path) -> str:
+    """Return the name of a format that no reader takes, by the content of a file, and a way."""
+    suffix = path.suffix.lower()
+    heads = next((heads for ends, heads in CONTENTS.items() if suffix in ends), ())
+    if not heads or not path.is_file():
+        return ""
+    with path.open("rb") as file:
+        begin = file.read(_HEAD)
+    way = next((way for pattern, way in heads if pattern.match(begin)), "")
+    return way.replace("{name}", path.name).replace("{stem}", path.stem)
 
 
 def reason(path: Path) -> str:

@@ -342,6 +342,8 @@ def _data(
         return file_parts.missing_bytes(data, end)
 
 
+#: Reason why a file is none of Tecplot.
+NO_TECPLOT = "no VARIABLES and ZONE are in it"
 #: Corners of a cell of Tecplot by its name.
 _CORNERS = {b"TRIANGLE": 3, b"QUADRILATERAL": 4, b"TETRAHEDRON": 4, b"BRICK": 8}
 
@@ -352,7 +354,7 @@ def _tecplot(file: BinaryIO) -> str:
     names = re.search(rb"(?is)VARIABLES\s*=(.*?)^\s*ZONE", data, re.MULTILINE)
     zones = re.findall(rb"(?im)^\s*ZONE\b([^\n]*(?:\n[^\n]*=[^\n]*)*)", data)
     if names is None:
-        return "no VARIABLES and ZONE are in it"
+        return NO_TECPLOT
     if data.count(b'"') % 2:
         return "a name in it has no end, for which VTK's reader waits"
     # Some zones share variables, have some at cells, or repeat numbers.
@@ -482,7 +484,7 @@ _FORMATS: dict[str, Callable[[BinaryIO], str]] = {
     ".vtm": vtk_xml.missing_block, **dict.fromkeys((".gz", ".mgz"), _gzip),
     **dict.fromkeys((".hdf", ".vtkhdf"), _vtkhdf),
     **dict.fromkeys((".glb", ".gltf"), gltf.missing_part),
-    **dict.fromkeys((".avs", ".inp"), _avs), **dict.fromkeys((".las", ".laz"), _las),
+    **dict.fromkeys((".avs", ".inp", ".ucd"), _avs), **dict.fromkeys((".las", ".laz"), _las),
     **dict.fromkeys((".grib", ".grib2", ".grb", ".grb2"), _grib),
     **dict.fromkeys((".nrrd", ".nhdr"), _nrrd),
     **dict.fromkeys((".mha", ".mhd"), _meta),

@@ -163,6 +163,8 @@ def read_3mf(path: Path) -> pv.MultiBlock:
             for name in archive.namelist()
             if name.endswith(".model")
         }
+    if beams := sum(len(model.findall(".//beam")) for model in models.values()):
+        _check.warn(f"file: '{path}': the {beams} beams of its lattices are left out")
     main = _named(models, next(iter(targets), None))
     objects = {
         (name, one.get("id")): one for name, model in models.items() for one in model.iter("object")

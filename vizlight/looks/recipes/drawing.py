@@ -490,6 +490,9 @@ class Case:
         if self.in_room:
             # A room needs no key.
             key = 0.0
+        elif self.question == "none" and self.array is None:
+            # Nor does a plane without data, which has a title where its file or a wish names it.
+            key = 0.0 if file_named(self.data) or self.wishes.picture.get("title") else None
         return self.wishes.camera(mesh, eye, axes=axes, key=key)
 
     @cached_property

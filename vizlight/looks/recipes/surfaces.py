@@ -40,8 +40,10 @@ if TYPE_CHECKING:
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
-#: Colour of what is seen face on and has no data, and most cells whose edges are drawn on it.
-GREY, MOST_WITH_EDGES = "#9a9a9a", 5000
+#: Colour of what is seen face on and has no data, and most cells whose edges are drawn.
+LIGHT_GREY, MOST_WITH_EDGES = "#bcbcbc", 5000
+#: Note on the walls of a body in a flow.
+ONLY_WALLS = "the walls inside of the mesh are drawn, its far field is left out"
 #: Opacity of the edges of elements, and outline of a solid before it is displaced.
 FAINT, BEFORE = 0.35, {"color": "#8a8a8a"}
 #: Length in pixels from which isolines on a solid are long, least share of their length in long
@@ -109,17 +111,9 @@ def values(case: Case) -> Drawing:
     if array.role == "colors" and (bands := meaning.of(mesh.run()).arrays.get(array.name, {})):
         words = f"{bands['long_name']} as red, green and blue"
     notes = [note] if note else []
-    kinds = kinds_of(mesh.run(), array.name) if array.role == "kinds" else ()
-    shown_kinds = kinds
-    if len(kinds) > MOST_IN_KEY:
-        shown_kinds = kinds_of(mesh.run(), array.name, MOST_IN_KEY)
-    if rest := len(kinds) - len(shown_kinds):
-        notes = [f"{array.name} has {len(kinds)} kinds: the {rest} smallest are grey"]
-        keys = [keys[0] | {"title": f"{keys[0]['title']}; grey: {rest} small ones"}]
-    elif (count := len(kinds)) > MOST_IN_KEY:
-        notes = [f"{array.name} has {count} kinds: colours repeat, and have no key"]
-        title = f"{keys[0]['title']}; {count} kinds"
-        keys = [keys[0] | TITLE_ALONE | {"title": title}]
+    if array.role == "kinds":
+        more, keys = _notes_on_kinds(case, mesh, keys[0])
+        notes = [*notes, *more]
     layers = [Layer(mesh, shown), *edges.edges(camera), *case.strokes([outline], **BEFORE)]
     drawing = Drawing(
         layers, camera, scene, lit,
@@ -128,6 +122,35 @@ def values(case: Case) -> Drawing:
     )  # fmt: skip
     is_smooth = array.role == "values" and not array.of_cells and case.contents.dimension == 3
     return _with_isolines(case, drawing) if bent and is_smooth else drawing
+
+
+def _notes_on_kinds(case: Case, mesh: Step, key: Keywords) -> tuple[list[str], list[Keywords]]:
+    """Return notes on the kinds that are not seen or have no colour of their own, and the key."""
+    array, title, notes = case.needed_array, key["title"], list[str]()
+    kinds = kinds_of(mesh.run(), array.name)
+    if hidden := _hidden_kinds(case, array, kinds):
+        notes.append(f"{array.name} {hidden} is inside, where it is not seen")
+        title = f"{title}; inside: {hidden}"
+    count, shown = len(kinds), kinds
+    if count > MOST_IN_KEY:
+        shown = kinds_of(mesh.run(), array.name, MOST_IN_KEY)
+    if rest := count - len(shown):
+        notes.append(f"{array.name} has {count} kinds: the {rest} smallest are grey")
+        return notes, [key | {"title": f"{title}; grey: {rest} small ones"}]
+    if count > MOST_IN_KEY:
+        notes.append(f"{array.name} has {count} kinds: colours repeat, and have no key")
+        return notes, [key | TITLE_ALONE | {"title": f"{title}; {count} kinds"}]
+    return notes, [key | {"title": title}]
+
+
+def _hidden_kinds(case: Case, array: Named, kinds: Sequence[float]) -> str:
+    """Return the names of kinds that a solid has inside of its surface alone, if they are few."""
+    data = case.data.run()
+    if case.contents.dimension != 3 or isinstance(data, pv.ImageData):
+        return ""
+    names = meaning.flags(data, array.name)
+    hidden = [kind for kind in kinds_of(data, array.name) if kind not in kinds]
+    return ", ".join(names.get(kind, f"{kind:g}") for kind in hidden[:MOST_IN_KEY])
 
 
 def _undisplaced(case: Case) -> Step | None:
@@ -143,7 +166,12 @@ def _undisplaced(case: Case) -> Step | None:
 def _elements(case: Case, mesh: Step) -> Keywords:
     """Return the drawing of edges of the cells that stresses, or values of a solid, belong to."""
     of_cells = case.needed_array.of_cells and case.contents.dimension == 3
-    if not (of_cells or case.contents.is_strained) or mesh.run().n_cells > MOST_WITH_EDGES:
+    return _edges_of_cells(mesh) if of_cells or case.contents.is_strained else {}
+
+
+def _edges_of_cells(mesh: Step) -> Keywords:
+    """Return the drawing of edges of cells, thin and faint, where these are not too many."""
+    if mesh.run().n_cells > MOST_WITH_EDGES:
         return {}
     return {"show_edges": True, "edge_color": DARK, "edge_opacity": FAINT}
 
@@ -180,7 +208,15 @@ def _with_isolines(case: Case, drawing: Drawing) -> Drawing:
 
 
 def surface(case: Case) -> Drawing:
-    """Draw a surface in the light of a question about its shape."""
+    """Draw a surface in the light of a question about its shape, with the edges of its elements.
+
+    Of a mesh that reaches far around a body its walls are drawn.
+    """
+    is_solid = case.contents.dimension == 3 and not isinstance(case.data.run(), pv.ImageData)
+    inner = Step("walls", "files.walls", case.data)
+    if is_solid and case.wishes.surface and inner.run().n_cells:
+        drawing = surface(replace(case, data=inner, contents=Contents(inner.run())))
+        return replace(drawing, words="walls", notes=[*drawing.notes, ONLY_WALLS])
     mesh = case.surface
     camera = case.camera(mesh)
     light = case.wishes.light_of_surface()
@@ -189,6 +225,8 @@ def surface(case: Case) -> Drawing:
     name = case.wishes.part.get("contour")
     words = f"isosurface of {name}" if name else "surface"
     drawn = {"scene": scene, **case.wishes.drawn(light)}
+    if is_solid or case.data.path == inner.path:
+        drawn |= _edges_of_cells(mesh)
     title = words if name else "; ".join(filter(None, [file_named(mesh), _size_of(case)]))
     if name and case.wishes.part.get("level") is not None:
         title = titled(mesh.run(), name, level=case.wishes.part["level"])
@@ -221,10 +259,8 @@ def plane(case: Case) -> Drawing:
     Sizes of cells are shown, near most of the cells, where many differ.
     """
     mesh = case.surface
-    drawn: Keywords = {"color": GREY}
-    if mesh.run().n_cells <= MOST_WITH_EDGES:
-        drawn |= {"show_edges": True, "edge_color": "white"}
-    else:
+    drawn: Keywords = {"color": LIGHT_GREY} | _edges_of_cells(mesh)
+    if mesh.run().n_cells > MOST_WITH_EDGES:
         sized = Step("sized", ".compute_cell_sizes", mesh, length=False, volume=False)
         areas = np.asarray(sized.run()["Area"])
         low, median, high = map(float, np.quantile(areas, (0, 0.5, 1)))
@@ -244,8 +280,11 @@ def plane(case: Case) -> Drawing:
             )
     camera = case.camera(mesh)
     scene = case.wishes.scene("none", camera)
-    layer = Layer(mesh, {"scene": scene} | drawn)
-    return Drawing([layer], camera, scene, case.lit(mesh, scene), "plane")
+    border = Step("borders", "files.borders", mesh)
+    outline = case.strokes([border] if border.run().n_cells else [])
+    layers = [Layer(mesh, {"scene": scene} | drawn), *outline]
+    keys = (TITLE_ALONE | {"title": name},) if (name := file_named(mesh)) else ()
+    return Drawing(layers, camera, scene, case.lit(mesh, scene), "plane", keys)
 
 
 def fur(case: Case) -> Drawing:
