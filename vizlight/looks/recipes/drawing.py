@@ -24,7 +24,7 @@ from vizlight.files import FORMATS
 from vizlight.looks import levels, map_parts, two_sides
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
-from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
+from vizlight.looks.framing import ISOMETRIC, MODELS, Viewpoint, eye_around, eye_of
 from vizlight.looks.ranges import range_of_scan, range_shown
 from vizlight.looks.steps import DISPLACED, Step
 from vizlight.maps import MISSING
@@ -353,7 +353,8 @@ class Case:
             return eye_around(self.surface.run(), cut=True)
         array = self.array
         shown = None if array is None or array.role in ("kinds", "colors") else array.name
-        return eye_of(mesh.run(), self.contents, shown)
+        is_model = not MODELS.isdisjoint(map(str.lower, path_of(self.data).suffixes))
+        return eye_of(mesh.run(), self.contents, shown, is_model=is_model)
 
     @cached_property
     def map_frame(self) -> Step | None:
@@ -698,8 +699,13 @@ def _in_unit(values: Sequence[float], unit: float) -> tuple[float, ...]:
 
 def file_named(mesh: Step) -> str:
     """Return the name, without its suffixes, of the file that a step begins with, if it does."""
+    return path_of(mesh).name.partition(".")[0]
+
+
+def path_of(mesh: Step) -> Path:
+    """Return the path of the file that a step begins with, one without a name if it does not."""
     *_, source = mesh.chain()
-    return Path(source).name.partition(".")[0] if isinstance(source, str | Path) else ""
+    return Path(source) if isinstance(source, str | Path) else Path()
 
 
 def with_file(mesh: Step, title: str) -> str:
