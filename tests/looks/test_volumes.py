@@ -8,7 +8,7 @@ import vizlight
 from vizlight.draw.margins import parted
 from vizlight.filters.key import annotated
 from vizlight.looks.recipes import volumes
-from vizlight.mesh import density_maps, meaning
+from vizlight.mesh import brains, density_maps, meaning
 
 
 def volume(noise=0.0, count=24, kind=float):
@@ -59,6 +59,21 @@ def test_an_isosurface_is_cut_open_where_the_values_inside_differ(tmp_path):
     assert len(vizlight.look(grid, "shape").mesh.split_bodies()) == 1
     grid["T"] = np.minimum(grid["T"], 0.55)
     assert "inside" not in vizlight.look(grid, contour="T", level=0.5).summary
+
+
+def test_the_outside_of_a_grey_scan_that_is_cut_open_is_not_black_and_there_is_room_for_its_key():
+    grid = pv.ImageData(dimensions=(24,) * 3)
+    grid["T"] = np.exp(-((grid.points - (11.5, 11.5, 21)) ** 2).sum(axis=1) / 40)
+    grid = grid.cast_to_structured_grid()
+    brains.mark_as_body(grid, "affine", np.eye(4))
+    look = vizlight.look(grid)
+    assert look.summary.endswith("with the values inside (shape: isosurface)")
+    skin, sides = look.drawing.layers[1:3]
+    assert skin.mesh.run()["T"].max() < sides.mesh.run()["T"].min() + 1e-6
+    assert "scalars" not in skin.keywords
+    assert sides.keywords["scalars"] == "T"
+    wide, tall = look.wishes.room
+    assert look.drawing.camera.keywords["aspect"] == pytest.approx(wide / tall, abs=1e-3)
 
 
 def test_a_temperature_has_the_colours_of_heat():

@@ -55,8 +55,8 @@ Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 FEET, STANDS, SMALL_BASE = (0.02, 0.05), 0.25, 0.25
 #: Formats of models of everyday things, which usually have y up.
 MODELS = {".obj", ".off"}
-#: Number of places of a surface that are mirrored, and largest mean distance to the surface, in that
-#: between neighbouring places, of a mirror image that is the same; least of one that is not, in it.
+#: Number of places of a surface that are mirrored, largest mean distance between it and its mirror
+#: image, in that of neighbouring places, and least of another image, in the distance of this one.
 MIRRORED, ALIKE, UNLIKE = 4000, 2.5, 1.5
 #: How much more the side of a body counts than other views, and how far the middle of what is on
 #: its left is from that of the body, as a share of its width.
