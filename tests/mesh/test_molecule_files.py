@@ -97,6 +97,18 @@ def test_bonds_and_charges_are_those_of_tripos(tmp_path):
     assert mesh["charge"].tolist() == [0.25, -0.25]
 
 
+@pytest.mark.parametrize(
+    ("text", "name", "title"),
+    [
+        (MOL, "a.mol", "far apart"),
+        (MOL.replace("far apart", "2519"), "a.mol", "a"),
+        (MOL2, "b.mol2", "carbon monoxide"),
+    ],
+)
+def test_the_title_is_the_name_of_the_molecule_or_of_its_file(text, name, title, tmp_path):
+    assert vizlight.look(written(tmp_path, text, name)).key[0]["title"] == title
+
+
 @pytest.mark.parametrize("text", [MOL, V3000])
 def test_bonds_are_those_of_mdl(text, tmp_path):
     mesh = vizlight.read(written(tmp_path, text, "a.mol"))

@@ -113,7 +113,9 @@ def of_mol2(path: Path) -> pv.PolyData:
     _check_counts(lines[2:3], atoms, bonds)
     elements = [" ".join(row[5:6]).partition(".")[0] for row in atoms]
     pairs = _pairs([row[0] for row in atoms], [row[1:3] for row in bonds])
-    mesh = molecules.joined(elements, _numbers([row[2:5] for row in atoms]), pairs)
+    mesh = molecules.joined(
+        elements, _numbers([row[2:5] for row in atoms]), pairs, name=" ".join(lines[1:2])
+    )
     if all(len(row) > 8 for row in atoms):
         mesh.point_data["charge"] = _numbers([row[8:9] for row in atoms])[:, 0]
     return mesh
@@ -156,7 +158,7 @@ def of_mol(path: Path) -> pv.PolyData:
         places = [[line[:10], line[10:20], line[20:30]] for line in rows[:n_atoms]]
         ends = [[line[:3].strip(), line[3:6].strip()] for line in rows[n_atoms:]]
         pairs = _pairs([str(i + 1) for i in range(n_atoms)], ends)
-    return molecules.joined(elements, _numbers(places), pairs)
+    return molecules.joined(elements, _numbers(places), pairs, name=lines[0])
 
 
 def _lines(path: Path) -> list[str]:
