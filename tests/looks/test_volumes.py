@@ -264,6 +264,7 @@ def test_a_map_of_densities_has_a_level_of_2_deviations_where_nothing_is_steeper
     grid = volume(count=40)
     grid["T"] = np.sin(9 * grid.points).prod(axis=1)
     assert vizlight.look(grid).shown == "slices"
+    grid["T"] = np.exp(2 * grid["T"])
     words = {"long_name": density_maps.WORDS}
     meaning.attach(grid, meaning.Meaning(arrays={"T": words}))
     look = vizlight.look(grid)
@@ -272,6 +273,19 @@ def test_a_map_of_densities_has_a_level_of_2_deviations_where_nothing_is_steeper
     assert look.shown == "isosurface"
     assert look.mesh.clean().n_open_edges == 0
     assert look.drawing.layers[-1].mesh.path == "render.box_axes"
+
+
+def test_a_map_of_differences_of_densities_has_a_level_of_3_deviations_of_both_signs():
+    grid = volume(count=40)
+    grid["T"] = np.random.default_rng(0).normal(size=grid.n_points)
+    words = {"long_name": density_maps.WORDS}
+    meaning.attach(grid, meaning.Meaning(arrays={"T": words}))
+    look = vizlight.look(grid)
+    np.testing.assert_allclose(np.unique(look.mesh["T"]), [-3, 3], rtol=0.02)
+    assert "the levels are 3 standard deviations from 0" in look.drawing.notes
+    # Noise around a ground above 0 is none.
+    grid["T"] += 0.5
+    assert "±" not in vizlight.look(grid).summary
 
 
 def test_borders_of_an_isosurface_are_as_light_as_its_box_and_it_has_no_creases():

@@ -101,6 +101,7 @@ def test_bonds_and_charges_are_those_of_tripos(tmp_path):
     ("text", "name", "title"),
     [
         (MOL, "a.mol", "far apart"),
+        (MOL.replace("far apart", "ligand|mol|1"), "a.mol", "ligand mol 1"),
         (MOL.replace("far apart", "2519"), "a.mol", "a"),
         (MOL2, "b.mol2", "carbon monoxide"),
     ],

@@ -585,7 +585,8 @@ def joined(
     said.add_kinds("atom_type", kinds)
     said.arrays["atom_type"]["long_name"] = "element"
     if re.search("[A-Za-z]", name):
-        said.arrays["atom_type"][NAME] = name.strip()
+        # In a title VTK takes a bar for the end of a column.
+        said.arrays["atom_type"][NAME] = " ".join(name.replace("|", " ").split())
     meaning.attach(mesh, said)
     return mesh
 

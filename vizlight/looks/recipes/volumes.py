@@ -57,8 +57,10 @@ ENCLOSED = 0.85
 #: Colours of a level below and above 0.
 LOBES = ["#4169cf", "#d63a3a"]
 #: Level of maps of densities above their mean, in their standard deviations, where nothing is
-#: steeper: crystallographers take 1 to 3.
+#: steeper: crystallographers take 1 to 3. Level of both signs of maps of differences of densities;
+#: most of their mean, in their deviation, and least ratio of the sizes of their ends.
 SIGMAS = 2.0
+SIGMAS_OF_DIFFERENCES, MEAN_OF_DIFFERENCES, ENDS_OF_DIFFERENCES = 3.0, 0.1, 0.5
 #: Deviation of the filter that smooths scans, in voxels, and the note on it.
 SMOOTH = 0.7
 SMOOTHED = f"the values are smoothed by {SMOOTH:g} voxels"
@@ -178,6 +180,10 @@ def _level(case: Case, array: Named) -> _Level | str:
         return _Level((-size, size), volume, notes, not is_scan, is_sure=True)
     # What stands out, such as a particle, is as that of a scan; that of a crystal is at its place.
     is_density = _is_density(case, array)
+    if is_density and _are_differences(values):
+        size = float(f"{SIGMAS_OF_DIFFERENCES * values.std():.2g}")
+        notes = [f"the levels are {SIGMAS_OF_DIFFERENCES:g} standard deviations from 0"]
+        return _Level((-size, size), case.data, notes, boxed=True, is_sure=True)
     if is_density and levels.best_level(case.data.run(), array.name)[1] < levels.GOOD:
         level = float(f"{values.mean() + SIGMAS * values.std():.2g}")
         is_image = isinstance(case.data.run(), pv.ImageData)
@@ -514,6 +520,13 @@ def _is_scan(case: Case, array: Named) -> bool:
         and len(case.contents.arrays) == 1
         and min(mesh.dimensions) > VOXELS
     )
+
+
+def _are_differences(values: Array) -> bool:
+    """Return whether densities are differences of two maps: around 0, and as far below as above."""
+    low, high = float(values.min()), float(values.max())
+    is_even = min(-low, high) > ENDS_OF_DIFFERENCES * max(-low, high)
+    return is_even and abs(float(values.mean())) < MEAN_OF_DIFFERENCES * float(values.std())
 
 
 def _is_density(case: Case, array: Named) -> bool:
