@@ -87,6 +87,10 @@ ALONG = 0.99
 OVER_TIME = re.compile(r"\btime: (mean|maximum|minimum|median|sum|variance)\b(?! within)")
 #: Names of velocities, in lower case.
 VELOCITY = re.compile(r"u|v|vel|u,v(,w)?|uvw?|vectors?|.*(veloc|vitesse|wi?nd|flow|current).*")
+#: Names of displacements, in lower case, which are alike over a part of a solid at most.
+DISPLACEMENT = re.compile(
+    r"(.*[^a-z])?[xyz]?(d(e?pl|i?spl?|isplacements?)|deformation)[xyz]?(,.*)?"
+)
 #: Start of dates that are no dates, and words of means of many years, whose steps are of no year.
 NO_DATE = ("0000-", "0001-")
 OF_MANY_YEARS = re.compile(r"long[ -]?term mean|climatolog")
@@ -806,8 +810,13 @@ def times_as_high(factor: float) -> str:
 
 
 def titled_length(mesh: pv.DataSet, name: str) -> str:
-    """Return the title of the lengths of vectors: their speed, if their unit or name is of one."""
+    """Return the title of the lengths of vectors: their speed, if their unit or name is of one.
+
+    The length of a displacement is a displacement.
+    """
     title = titled(mesh, name)
+    if DISPLACEMENT.fullmatch(name.lower()):
+        return f"displacement{title.removeprefix(name)}" if title.startswith(name) else title
     is_speed = title.lower().endswith("/s)") or VELOCITY.fullmatch(name.lower())
     # The speed of a velocity is a speed.
     words = re.sub(r"(?i)^of velocity(?= \(|$)", "", f"of {title}").strip()
