@@ -82,6 +82,11 @@ def test_beads_of_gromacs_are_points_of_residues(tmp_path):
     mesh = vizlight.read(written(tmp_path, "\n".join(["", "2", *beads, "1 1 1", ""]), "a.gro"))
     assert "atom_type" not in mesh.point_data
     assert mesh.active_scalars_name == "residue_name"
+    # Balls touch each other, and are lit.
+    np.testing.assert_allclose(mesh["radius"], 5)
+    look = vizlight.look(mesh)
+    assert look.shown == "molecule"
+    np.testing.assert_allclose(np.ptp(look.mesh.points, axis=0), (9, 5, 8), atol=0.1)
 
 
 def test_lines_of_gromacs_beyond_its_count(tmp_path):

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pyvista as pv
+import scipy
 
 from vizlight._types import Array, Indices
 from vizlight.mesh import file_parts, meaning, molecules
@@ -28,7 +29,7 @@ def of_gro(path: Path) -> pv.PolyData:
     """Return the first frame of a GROMACS file in angstroms, its bonds by the distances of atoms.
 
     The names of atoms give their elements. Where no atoms are joined they are beads, which have no
-    element.
+    element, and the usual distance to the nearest one as their radius.
 
     Parameters
     ----------
@@ -75,9 +76,17 @@ def of_gro(path: Path) -> pv.PolyData:
         [residue for residue, _ in names],
     )
     if not mesh.n_lines:
-        del mesh.point_data["atom_type"], mesh.point_data["radius"]
+        del mesh.point_data["atom_type"]
+        mesh.point_data["radius"] = np.full(count, _apart(np.asarray(mesh.points)))
         mesh.set_active_scalars(molecules.RESIDUE)
     return mesh
+
+
+def _apart(places: Array) -> float:
+    """Return the median distance of nearest neighbours, in angstroms."""
+    if len(places) < 2:
+        return _NANOMETRE
+    return float(np.median(scipy.spatial.cKDTree(places).query(places, k=2)[0][:, 1]))
 
 
 def _element(residue: str, name: str) -> str:

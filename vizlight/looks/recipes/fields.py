@@ -19,8 +19,8 @@ from vizlight.filters.streamlines import SPEED as SPEED_OF_LINES
 from vizlight.filters.streamlines import own_name
 from vizlight.looks.levels import sampled_corners
 from vizlight.looks.recipes.drawing import (
-    DISPLACEMENT,
     BESIDE,
+    DISPLACEMENT,
     Doubt,
     Drawing,
     Layer,

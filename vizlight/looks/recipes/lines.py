@@ -168,7 +168,8 @@ def _somas(case: Case) -> list[Layer]:
 def is_molecule(mesh: pv.DataSet) -> bool:
     """Return whether a mesh is a molecule, with few enough atoms for balls, and sticks if any."""
     arrays = mesh.point_data
-    is_one = isinstance(mesh, pv.PolyData) and {"atom_type", "radius"} <= set(arrays)
+    kinds = {"atom_type", molecules.RESIDUE} & set(arrays)
+    is_one = isinstance(mesh, pv.PolyData) and "radius" in arrays and bool(kinds)
     if not is_one or np.ndim(arrays["radius"]) != 1:
         return False
     return mesh.n_points <= (MOST_BALLS if mesh.n_lines else MOST_ALONE)
