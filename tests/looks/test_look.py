@@ -325,6 +325,8 @@ def test_options_win_over_the_rule():
         ("none.vtp", {}, FileError, "no such file"),
         (ball(p=lambda x, y, z: x), {"array": "q"}, ValueError, "array: expected the name of an"),
         (ball(p=lambda x, y, z: x), {"question": "direction"}, ValueError, "vectors for 'directi"),
+        (ball(p=lambda x, y, z: x), {"question": "flow"}, ValueError, "question: expected vectors"),
+        (ball(), {"slice": "z:99"}, ValueError, "the mesh has .*z from -0.5 to 0.5"),
         (ball(), {"question": "beauty"}, ValueError, "question: expected a question"),
         (ball(), {"stile": "dark"}, TypeError, "an option of look, got a name that"),
         (ball(), {"style": "neon"}, ValueError, "style: expected"),

@@ -755,7 +755,11 @@ def _explicit(
         got = f"{array.name!r} with {array.role}" if array is not None else arrays or "no array"
         is_of_tangents = question in QUESTIONS and QUESTIONS[question].of_tangents
         remedy = "take question='shape'" if is_of_tangents else ""
-        raise value_error("array", f"{' or '.join(roles)} for {question!r}", got, remedy)
+        # Without such an array it is the question that does not fit.
+        name = "question" if contents.first(*roles) is None else "array"
+        if name == "question" and not remedy:
+            remedy = "take question='auto', or a mesh with such an array"
+        raise value_error(name, f"{' or '.join(roles)} for {question!r}", got, remedy)
     kind = next(rule.shown for rule in RULES if rule.fits(contents))
     rule = Rule(kind, lambda _: True, question, roles, recipe, f"{question} was asked for")
     return rule, Case(data, contents, wishes, question, chosen)
