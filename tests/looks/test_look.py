@@ -468,6 +468,18 @@ def test_a_plane_without_data_is_grey_with_its_edges(tmp_path):
     assert 120 < np.median(pixels[30:50, 50:70]) < 200
 
 
+def test_the_title_of_a_plane_is_its_only_value():
+    plane = pv.Plane(i_size=4, i_resolution=2, j_resolution=2)
+    plane.clear_data()
+    plane["T"] = np.full(plane.n_cells, 285.0)
+    meaning.attach(plane, meaning.Meaning(arrays={"T": {"long_name": "warmth", "units": "K"}}))
+    look = vizlight.look(plane)
+    assert look.shown == "sheet"
+    assert [key["title"] for key in look.key] == ["warmth = 285 K"]
+    # A title alone leaves the room of a key beside the data, and takes none below them.
+    assert look.drawing.camera.keywords["aspect"] <= 1200 / 748
+
+
 def test_labels_of_an_image_have_the_smooth_surface_of_what_has_a_label(tmp_path):
     image = pv.ImageData(dimensions=(30, 30, 30))
     x, y, z = image.points.T - 14.5

@@ -76,6 +76,17 @@ def test_the_outside_of_a_grey_scan_that_is_cut_open_is_not_black_and_there_is_r
     assert look.drawing.camera.keywords["aspect"] == pytest.approx(wide / tall, abs=1e-3)
 
 
+def test_an_isosurface_of_a_scan_around_its_lowest_values_gives_way_to_slices():
+    grid = pv.ImageData(dimensions=(24,) * 3)
+    grid["T"] = 1 - np.exp(-((grid.points - 11.5) ** 2).sum(axis=1) / 20)
+    assert vizlight.look(grid).shown == "isosurface"
+    brains.mark_as_body(grid, "affine", np.eye(4))
+    look = vizlight.look(grid)
+    assert "slices of T" in look.summary
+    grid["T"] = 1 - grid["T"]
+    assert "isosurface T" in vizlight.look(grid).summary
+
+
 def test_a_temperature_has_the_colours_of_heat():
     grid = volume()
     for name, colors in (("T", "vizlight.heat"), ("Temperature_K", "vizlight.heat"),

@@ -523,7 +523,8 @@ def _decided(rule: Rule, case: Case, notes: Sequence[str], unread: int = 0) -> L
         assert drawing.doubt is not None
         drawing = drawing.doubt.instead()
     while True:
-        if case.wishes.wide and [key.get("question") for key in drawing.keys] != ["value"]:
+        keys = [key for key in drawing.keys if key.get("cmap") != surfaces.TITLE_ALONE["cmap"]]
+        if case.wishes.wide and [key.get("question") for key in keys] != ["value"]:
             # A disc has no room below a map.
             narrow = replace(case, wishes=replace(case.wishes, wide=False))
             return _decided(rule, narrow, notes, unread)

@@ -211,6 +211,8 @@ def _keys(case: Case, scene: Step, title: str) -> list[Keywords]:
 def plane(case: Case) -> Drawing:
     """Draw a plane without data, which no light can shape: grey, with the edges of its cells.
 
+    An array with one value is the title.
+
     Sizes of cells are shown, near most of the cells, where many differ.
     """
     mesh = case.surface
@@ -238,7 +240,13 @@ def plane(case: Case) -> Drawing:
     camera = case.camera(mesh)
     scene = case.wishes.scene("none", camera)
     layer = Layer(mesh, {"scene": scene} | drawn)
-    return Drawing([layer], camera, scene, case.lit(mesh, scene), "plane")
+    title = ", ".join(
+        titled(case.data.run(), name, level=value)
+        for name, value in case.contents.constants.items()
+        if value is not None
+    )
+    keys = [TITLE_ALONE | {"title": title}] if title else ()
+    return Drawing([layer], camera, scene, case.lit(mesh, scene), "plane", keys=keys)
 
 
 def fur(case: Case) -> Drawing:

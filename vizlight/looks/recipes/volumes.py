@@ -43,6 +43,8 @@ RINGING = 0.1
 #: Least share of its box that what is above the lowest value of a scan fills where it is cut open,
 #: the points along each axis by which that is found, and the number of values that are looked at.
 COMPACT, STEPS, SAMPLE = 0.25, 50, 100_000
+#: Share of the values of a scan above a level from which it encloses those below it.
+MOSTLY = 0.75
 #: Share of the values above a level up to which they are on its isosurface.
 ON_LEVEL = 1e-3
 #: Colour of the skin.
@@ -111,6 +113,8 @@ def isosurface(case: Case) -> Drawing:
     valued = replace(case, question="value")
     if isinstance(level, str):
         return _cut_open(valued) or slices(valued, level)
+    if not level.is_sure and case.is_of_body and _are_low_inside(case, array, level.at):
+        return slices(valued, "; the isosurface would enclose the lowest values")
     part = dict(case.wishes.part) | {"contour": array.name, "level": level.at}
     whole = replace(case, wishes=replace(case.wishes, part=part))
     mesh = whole.wishes.isosurface(level.volume)
@@ -202,6 +206,14 @@ def _level(case: Case, array: Named) -> _Level | str:
         return f"; no isosurface stands out (the steepest is {contrast:.1f} times the mean)"
     volume = _closed(volume, array.name, level) if is_scan else volume
     return _Level(level, volume, notes, boxed=not is_scan, is_sure=not is_auto)
+
+
+def _are_low_inside(case: Case, array: Named, level: float | tuple[float, float]) -> bool:
+    """Return whether an isosurface encloses the lesser part of a scan, of low values.
+
+    What it would show of a body is a gap.
+    """
+    return not isinstance(level, tuple) and bool(np.mean(_sample(case, array) > level) > MOSTLY)
 
 
 def _size_of_both_signs(values: Array, volume: Step, array: Named) -> float | None:
