@@ -206,7 +206,8 @@ def _lies_along_y(corners: Array, areas: Array) -> bool:
     chosen = random.choice(len(corners), MIRRORED, p=areas / areas.sum())
     places = np.einsum("sk,skx->sx", random.dirichlet(np.ones(3), MIRRORED), corners[chosen])
     tree = scipy.spatial.cKDTree(places)
-    apart = np.median(tree.query(places, k=2)[0][:, 1])
+    distances: Array = np.asarray(tree.query(places, k=2)[0])
+    apart = np.median(distances[:, 1])
     ends = corners.min(axis=(0, 1)) + corners.max(axis=(0, 1))
     across_y, across_z = (
         np.mean(tree.query(np.where(np.arange(3) == axis, ends - places, places))[0])

@@ -76,7 +76,8 @@ class Step:
         if self.asked[0] and not result.n_points:
             expected, remedy = "a value that leaves points", ""
             if self.path in {".slice", ".clip"}:
-                bounds: Sequence[float] = run(self.arguments[0]).bounds
+                mesh: Foreign = run(self.arguments[0])
+                bounds: Sequence[float] = mesh.bounds
                 ends = zip("xyz", bounds[::2], bounds[1::2], strict=True)
                 runs = ", ".join(f"{axis} from {low:.4g} to {high:.4g}" for axis, low, high in ends)
                 remedy = f"the mesh has {runs}"

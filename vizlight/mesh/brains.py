@@ -237,11 +237,12 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     mark_as_body(grid, "affine", affine)
     if steps < 2:
         return grid
-    units = getattr(image.header, "get_xyzt_units", tuple)()
+    units: Foreign = getattr(image.header, "get_xyzt_units", lambda: ("", ""))
     said = meaning.of(grid)
-    said.time = _SECONDS.get(units[-1] if units else "", "")
+    said.time = _SECONDS.get(units()[-1], "")
     meaning.attach(grid, said)
-    return series.marked(grid, times, index)
+    series.marked(grid, times, index)
+    return grid
 
 
 def turned(rows: AnyArray, affine: AnyArray, name: str) -> pv.ImageData | pv.StructuredGrid:

@@ -86,7 +86,8 @@ def _apart(places: Array) -> float:
     """Return the median distance of nearest neighbours, in angstroms."""
     if len(places) < 2:
         return _NANOMETRE
-    return float(np.median(scipy.spatial.cKDTree(places).query(places, k=2)[0][:, 1]))
+    distances: Array = np.asarray(scipy.spatial.cKDTree(places).query(places, k=2)[0])
+    return float(np.median(distances[:, 1]))
 
 
 def _element(residue: str, name: str) -> str:
