@@ -368,7 +368,8 @@ def test_a_molecule_has_balls_for_its_atoms_and_sticks_between_them(tmp_path):
     assert np.isclose(far, 0.24, atol=1e-5).sum() > 2000
     # Each half of a stick has the colour of its own atom.
     assert far.max() < 0.5
-    assert look.drawing.keys[0]["title"] == "element"
+    assert look.drawing.keys[0]["title"] == "water"
+    assert vizlight.look(vizlight.read(path), size=SIZE).drawing.keys[0]["title"] == "element"
     assert vizlight.look(path, size=SIZE, array="radius").array == "radius"
 
 
