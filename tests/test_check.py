@@ -76,6 +76,7 @@ def test_types_of_floats():
 def test_long_values_are_shortened():
     assert len(_check.describe("x" * 500)) <= 60
     assert _check.describe(np.ones((2, 3))) == "an array of shape (2, 3) and type float64"
+    assert _check.describe(np.float64(95)) == "95.0"
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64, np.int64, np.bool_])

@@ -166,12 +166,14 @@ def test_wrong_endings_and_folders(tmp_path):
         match=r"output: expected a name that ends in \.vti, \.vtk, \.stl for ImageData",
     ):
         files.write_mesh(volume(), tmp_path / "a.vtp")
-    with pytest.raises(files.FileError, match=r"output: expected a name that ends in \.png, got"):
+    with pytest.raises(files.FileError, match=r"path: expected a name that ends in \.png, got"):
         files.check_output(tmp_path / "a.gif", (".png",))
-    with pytest.raises(files.FileError, match="output: expected a folder that exists"):
+    with pytest.raises(
+        files.FileError, match="path: expected a folder that exists, got .*; make it first"
+    ):
         files.check_output(tmp_path / "none" / "a.png", (".png",))
     (tmp_path / "d.png").mkdir()
-    with pytest.raises(files.FileError, match="output: expected a file, got .*a folder"):
+    with pytest.raises(files.FileError, match="path: expected a file, got .*a folder"):
         files.check_output(tmp_path / "d.png", (".png",))
 
 

@@ -6,6 +6,7 @@ import inspect
 import math
 import re
 import sys
+from numbers import Number
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -46,6 +47,8 @@ def describe(value: object) -> str:
     """Return a short description of a value for an error message."""
     if _is_array(value):
         return f"an array of shape {value.shape} and type {value.dtype}"  # type: ignore[attr-defined]
+    if isinstance(value, Number) and hasattr(value, "item"):
+        value = value.item()  # NumPy prints the type of a number
     try:
         # A file or a terminal may take no half of a surrogate pair.
         text = " ".join(repr(value).encode("utf-8", "backslashreplace").decode().split())

@@ -748,7 +748,7 @@ def _left_out(data: pv.MultiBlock, meshes: Sequence[pv.DataSet]) -> list[str]:
     return [f"arrays of side sets alone are left out: {', '.join(sorted(lost))}"] if lost else []
 
 
-def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "output") -> Path:
+def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "path") -> Path:
     """Return the path of an output file, if the file can be written.
 
     Parameters
@@ -757,7 +757,7 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
         Path of the file.
     formats : tuple of str
         Allowed file name extensions, each with its dot.
-    name : str, default: "output"
+    name : str, default: "path"
         Name of the argument in messages.
 
     Returns
@@ -778,7 +778,7 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
     if path.suffix.lower() not in formats:
         raise _wrong(name, f"a name that ends in {', '.join(formats)}", f"'{path}'")
     if not path.parent.is_dir():
-        raise _wrong(name, "a folder that exists", f"'{path.parent}'")
+        raise _wrong(name, "a folder that exists", f"'{path.parent}'", "make it first")
     _refuse_others(name, path)
     if not os.access(path.parent, os.W_OK):
         got = f"'{path.parent}', which is read-only"

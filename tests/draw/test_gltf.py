@@ -145,7 +145,7 @@ def test_a_terrain_is_lit_on_one_side_as_a_whole(height, tmp_path):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"path": "lit.gltf"}, "output: expected a name that ends in .glb"),
+        ({"path": "lit.gltf"}, "path: expected a name that ends in .glb"),
         ({"scene": None}, "scene: expected a scene or the record of one"),
         ({"tangents": "nothing"}, "tangents: expected .*'nothing'"),
         ({"scalars": "nothing"}, "scalars: expected .*'nothing'"),

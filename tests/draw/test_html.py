@@ -378,8 +378,8 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"path": "lit.png"}, "output: expected a name that ends in .html, .htm"),
-        ({"path": "none/lit.html"}, "output: expected a folder that exists"),
+        ({"path": "lit.png"}, "path: expected a name that ends in .html, .htm"),
+        ({"path": "none/lit.html"}, "path: expected a folder that exists"),
         ({"tangents": "height"}, "tangents: expected .*'height'"),
         ({"scalars": "nothing"}, "scalars: expected .*'nothing'"),
         ({"files": 3}, "files: expected"),

@@ -218,8 +218,8 @@ def test_a_missing_package_is_named_before_anything_is_drawn(
 @pytest.mark.parametrize(
     ("name", "options", "error", "words"),
     [
-        ("t.avi", {}, FileError, "output: expected a name that ends in .png, .gif, .mp4"),
-        ("none/t.png", {}, FileError, "output: expected a folder that exists"),
+        ("t.avi", {}, FileError, "path: expected a name that ends in .png, .gif, .mp4"),
+        ("none/t.png", {}, FileError, "path: expected a folder that exists"),
         ("t.png", {"frames": 0}, ValueError, "frames: expected an integer of at least 1"),
         ("t.png", {"fps": 0}, ValueError, "fps: expected a number from 0.01 to 100"),
         ("t.png", {"angle": np.nan}, ValueError, "angle: expected a finite number"),

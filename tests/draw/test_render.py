@@ -121,8 +121,8 @@ EMPTY["luminance"] = np.empty(0)
     ("panels", "name", "words"),
     [
         (BALL, "x.png", r"scalars: .*a cell array \('Normals'\), got 'luminance'"),
-        (BALL, "x.jpg", r"output: expected a name that ends in \.png"),
-        (BALL, "no/x.png", "output: expected a folder that exists"),
+        (BALL, "x.jpg", r"path: expected a name that ends in \.png"),
+        (BALL, "no/x.png", "path: expected a folder that exists"),
         ([], "x.png", "panels: expected one mesh or more"),
         (EMPTY, "x.png", "panels: expected a mesh with points"),
     ],

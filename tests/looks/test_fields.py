@@ -341,3 +341,18 @@ def test_strokes_of_a_slab_lie_in_its_middle_and_not_on_its_sides():
     drawn = {layer.mesh.name: layer.mesh.run() for layer in look.drawing.layers}
     for name in ("plane", "strokes"):
         assert drawn[name].bounds[4:] == pytest.approx((1.5, 1.5))
+
+
+def test_displacements_have_a_linear_bar_and_a_word_for_their_length():
+    bar = pv.ImageData(dimensions=(30, 5, 5)).cast_to_unstructured_grid()
+    # A beam that bends near its end alone.
+    bar["zdsp"] = 1e-7 * (bar.points[:, 0] / 29) ** 12
+    bar["xdsp"], bar["ydsp"] = bar["zdsp"] / 9, 0 * bar["zdsp"]
+    (key,) = vizlight.look(bar, array="xdsp,ydsp,zdsp").key
+    assert key["title"] == "displacement"
+    assert "log_scale" not in getattr(key["cmap"], "keywords", {})
+    named = bar.copy()
+    for old, new in zip(("xdsp", "ydsp", "zdsp"), "uvw", strict=True):
+        named.rename_array(old, new)
+    (key,) = vizlight.look(named, array="u,v,w").key
+    assert key["cmap"].log_scale

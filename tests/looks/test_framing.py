@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from vizlight import look
 from vizlight.looks import framing
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import eye_of
@@ -114,6 +115,36 @@ def test_a_thing_that_stands_along_y_has_y_up(turn, slope):
     assert viewpoint.up == ((0, 1, 0) if turn == 0 else (0, 0, 1))
     # It is seen from above its foot.
     assert np.dot(viewpoint.toward, viewpoint.up) > 0.3
+
+
+@pytest.mark.parametrize(("turn", "up"), [(0, (0, 1, 0)), (90, (0, 0, 1))])
+def test_a_model_that_stands_on_nothing_has_y_up_unless_it_is_mirrored_in_y(turn, up):
+    # A head without a foot, the same on its left and its right, which are along z.
+    head = pv.Sphere(theta_resolution=40, phi_resolution=40)
+    nose = pv.Cone(center=(0.6, 0.1, 0), direction=(1, 0, 0), height=0.5, radius=0.15)
+    chin = pv.Sphere(radius=0.2, center=(0.3, -0.45, 0))
+    thing = pv.merge([head, nose, chin]).extract_surface(algorithm=None).triangulate()
+    thing = thing.rotate_x(turn)
+    assert eye_of(thing, Contents(thing), is_model=True).up == up
+    assert eye(thing).up == (0, 0, 1)
+
+
+@pytest.mark.parametrize("name", ["head.obj", "head.OFF", "head.stl"])
+def test_a_file_of_a_model_has_y_up(tmp_path, name):
+    head = pv.ParametricEllipsoid(1.0, 1.4, 0.8).triangulate()
+    head.points[:, 0] += 0.3 * head.points[:, 1] * np.abs(head.points[:, 1])
+    path = tmp_path / name
+    faces = head.regular_faces
+    if path.suffix == ".OFF":
+        rows = [f"OFF\n{len(head.points)} {len(faces)} 0"]
+        rows += [" ".join(map(str, point)) for point in head.points]
+        rows += [f"3 {a} {b} {c}" for a, b, c in faces]
+        path.write_text("\n".join(rows) + "\n")
+    else:
+        head.clear_data()
+        head.save(path) if path.suffix == ".stl" else pv.save_meshio(path, head)
+    up = look(path).view.up
+    assert tuple(np.round(up)) == ((0, 0, 1) if name == "head.stl" else (0, 1, 0))
 
 
 @pytest.mark.parametrize("thing", [pv.Sphere(), pv.Cube(), pv.Cylinder(direction=(0, 1, 0))])

@@ -326,6 +326,8 @@ def test_options_win_over_the_rule():
         ("none.vtp", {}, FileError, "no such file"),
         (ball(p=lambda x, y, z: x), {"array": "q"}, ValueError, "array: expected the name of an"),
         (ball(p=lambda x, y, z: x), {"question": "direction"}, ValueError, "vectors for 'directi"),
+        (ball(p=lambda x, y, z: x), {"question": "flow"}, ValueError, "question: expected vectors"),
+        (ball(), {"slice": "z:99"}, ValueError, "the mesh has .*z from -0.5 to 0.5"),
         (ball(), {"question": "beauty"}, ValueError, "question: expected a question"),
         (ball(), {"stile": "dark"}, TypeError, "an option of look, got a name that"),
         (ball(), {"style": "neon"}, ValueError, "style: expected"),
@@ -368,7 +370,8 @@ def test_a_molecule_has_balls_for_its_atoms_and_sticks_between_them(tmp_path):
     assert np.isclose(far, 0.24, atol=1e-5).sum() > 2000
     # Each half of a stick has the colour of its own atom.
     assert far.max() < 0.5
-    assert look.drawing.keys[0]["title"] == "element"
+    assert look.drawing.keys[0]["title"] == "water"
+    assert vizlight.look(vizlight.read(path), size=SIZE).drawing.keys[0]["title"] == "element"
     assert vizlight.look(path, size=SIZE, array="radius").array == "radius"
 
 
@@ -466,6 +469,18 @@ def test_a_plane_without_data_is_grey_with_its_edges(tmp_path):
     assert (look.question, look.shown, look.drawing.keys) == ("none", "sheet", ())
     pixels = np.asarray(Image.open(look.save(tmp_path / "a.png")).convert("L"))
     assert 120 < np.median(pixels[30:50, 50:70]) < 200
+
+
+def test_the_title_of_a_plane_is_its_only_value():
+    plane = pv.Plane(i_size=4, i_resolution=2, j_resolution=2)
+    plane.clear_data()
+    plane["T"] = np.full(plane.n_cells, 285.0)
+    meaning.attach(plane, meaning.Meaning(arrays={"T": {"long_name": "warmth", "units": "K"}}))
+    look = vizlight.look(plane)
+    assert look.shown == "sheet"
+    assert [key["title"] for key in look.key] == ["warmth = 285 K"]
+    # A title alone leaves the room of a key beside the data, and takes none below them.
+    assert look.drawing.camera.keywords["aspect"] <= 1200 / 748
 
 
 def test_labels_of_an_image_have_the_smooth_surface_of_what_has_a_label(tmp_path):

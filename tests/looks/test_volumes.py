@@ -8,7 +8,7 @@ import vizlight
 from vizlight.draw.margins import parted
 from vizlight.filters.key import annotated
 from vizlight.looks.recipes import volumes
-from vizlight.mesh import density_maps, meaning
+from vizlight.mesh import brains, density_maps, meaning
 
 
 def volume(noise=0.0, count=24, kind=float):
@@ -59,6 +59,32 @@ def test_an_isosurface_is_cut_open_where_the_values_inside_differ(tmp_path):
     assert len(vizlight.look(grid, "shape").mesh.split_bodies()) == 1
     grid["T"] = np.minimum(grid["T"], 0.55)
     assert "inside" not in vizlight.look(grid, contour="T", level=0.5).summary
+
+
+def test_the_outside_of_a_grey_scan_that_is_cut_open_is_not_black_and_there_is_room_for_its_key():
+    grid = pv.ImageData(dimensions=(24,) * 3)
+    grid["T"] = np.exp(-((grid.points - (11.5, 11.5, 21)) ** 2).sum(axis=1) / 40)
+    grid = grid.cast_to_structured_grid()
+    brains.mark_as_body(grid, "affine", np.eye(4))
+    look = vizlight.look(grid)
+    assert look.summary.endswith("with the values inside (shape: isosurface)")
+    skin, sides = look.drawing.layers[1:3]
+    assert skin.mesh.run()["T"].max() < sides.mesh.run()["T"].min() + 1e-6
+    assert "scalars" not in skin.keywords
+    assert sides.keywords["scalars"] == "T"
+    wide, tall = look.wishes.room
+    assert look.drawing.camera.keywords["aspect"] == pytest.approx(wide / tall, abs=1e-3)
+
+
+def test_an_isosurface_of_a_scan_around_its_lowest_values_gives_way_to_slices():
+    grid = pv.ImageData(dimensions=(24,) * 3)
+    grid["T"] = 1 - np.exp(-((grid.points - 11.5) ** 2).sum(axis=1) / 20)
+    assert vizlight.look(grid).shown == "isosurface"
+    brains.mark_as_body(grid, "affine", np.eye(4))
+    look = vizlight.look(grid)
+    assert "slices of T" in look.summary
+    grid["T"] = 1 - grid["T"]
+    assert "isosurface T" in vizlight.look(grid).summary
 
 
 def test_a_temperature_has_the_colours_of_heat():
@@ -251,6 +277,7 @@ def test_a_map_of_densities_has_a_level_of_2_deviations_where_nothing_is_steeper
     grid = volume(count=40)
     grid["T"] = np.sin(9 * grid.points).prod(axis=1)
     assert vizlight.look(grid).shown == "slices"
+    grid["T"] = np.exp(2 * grid["T"])
     words = {"long_name": density_maps.WORDS}
     meaning.attach(grid, meaning.Meaning(arrays={"T": words}))
     look = vizlight.look(grid)
@@ -259,6 +286,19 @@ def test_a_map_of_densities_has_a_level_of_2_deviations_where_nothing_is_steeper
     assert look.shown == "isosurface"
     assert look.mesh.clean().n_open_edges == 0
     assert look.drawing.layers[-1].mesh.path == "render.box_axes"
+
+
+def test_a_map_of_differences_of_densities_has_a_level_of_3_deviations_of_both_signs():
+    grid = volume(count=40)
+    grid["T"] = np.random.default_rng(0).normal(size=grid.n_points)
+    words = {"long_name": density_maps.WORDS}
+    meaning.attach(grid, meaning.Meaning(arrays={"T": words}))
+    look = vizlight.look(grid)
+    np.testing.assert_allclose(np.unique(look.mesh["T"]), [-3, 3], rtol=0.02)
+    assert "the levels are 3 standard deviations from 0" in look.drawing.notes
+    # Noise around a ground above 0 is none.
+    grid["T"] += 0.5
+    assert "±" not in vizlight.look(grid).summary
 
 
 def test_borders_of_an_isosurface_are_as_light_as_its_box_and_it_has_no_creases():

@@ -11,6 +11,7 @@ import scipy
 
 import vizlight
 from vizlight import files
+from vizlight.looks.recipes import drawing
 from vizlight.mesh import meaning
 
 nibabel = pytest.importorskip("nibabel")
@@ -233,10 +234,12 @@ def test_steps_of_a_functional_image(tmp_path):
     values = np.zeros((3, 4, 5, 4), np.int16) + np.arange(4, dtype=np.int16)
     image = nibabel.Nifti1Image(values, np.eye(4))
     image.header.set_zooms((1, 1, 1, 2.5))
+    image.header.set_xyzt_units("mm", "sec")
     nibabel.save(image, tmp_path / "f.nii.gz")
     mesh = vizlight.read(tmp_path / "f.nii.gz", time=5.0)
     assert mesh["NIFTI"].tolist() == [2] * 60
     assert mesh.field_data["TimeSteps"].tolist() == [0, 2.5, 5, 7.5]
+    assert drawing.titled(mesh, "NIFTI").endswith("t = 5 s")
     nifti(tmp_path / "v.nii", np.zeros((3, 3, 3), np.float32), np.eye(4))
     with pytest.raises(ValueError, match="time: expected a file of several steps"):
         vizlight.read(tmp_path / "v.nii", time=3)

@@ -82,6 +82,11 @@ def test_beads_of_gromacs_are_points_of_residues(tmp_path):
     mesh = vizlight.read(written(tmp_path, "\n".join(["", "2", *beads, "1 1 1", ""]), "a.gro"))
     assert "atom_type" not in mesh.point_data
     assert mesh.active_scalars_name == "residue_name"
+    # Balls touch each other, and are lit.
+    np.testing.assert_allclose(mesh["radius"], 5)
+    look = vizlight.look(mesh)
+    assert look.shown == "molecule"
+    np.testing.assert_allclose(np.ptp(look.mesh.points, axis=0), (9, 5, 8), atol=0.1)
 
 
 def test_lines_of_gromacs_beyond_its_count(tmp_path):
@@ -95,6 +100,19 @@ def test_bonds_and_charges_are_those_of_tripos(tmp_path):
     assert mesh["atom_type"].tolist() == [6, 8]
     np.testing.assert_allclose(mesh.points[1], (1.1, 0, 2.5))
     assert mesh["charge"].tolist() == [0.25, -0.25]
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "title"),
+    [
+        (MOL, "a.mol", "far apart"),
+        (MOL.replace("far apart", "ligand|mol|1"), "a.mol", "ligand mol 1"),
+        (MOL.replace("far apart", "2519"), "a.mol", "a"),
+        (MOL2, "b.mol2", "carbon monoxide"),
+    ],
+)
+def test_the_title_is_the_name_of_the_molecule_or_of_its_file(text, name, title, tmp_path):
+    assert vizlight.look(written(tmp_path, text, name)).key[0]["title"] == title
 
 
 @pytest.mark.parametrize("text", [MOL, V3000])

@@ -240,6 +240,22 @@ def test_a_crystal_has_its_atoms_in_all_places_of_its_cell(tmp_path):
         (x, y, z) for x in (0, 4) for y in (0, 4) for z in (0, 4)
     ]
     np.testing.assert_allclose(mesh.points[mesh["atom_type"] == 17], [[2, 2, 2]])
+    np.testing.assert_allclose(mesh.field_data["unit_cell"], 4 * np.eye(3), atol=1e-12)
+
+
+def test_the_picture_of_a_crystal_has_the_edges_of_its_cell_and_its_formula(tmp_path):
+    pytest.importorskip("gemmi")
+    text = CRYSTAL.replace("length_c 4", "length_c 7").replace("P m -3 m", "P m m m")
+    text = text.replace("loop_", "_chemical_formula_sum 'Cs Cl'\nloop_")
+    path = written(tmp_path, f"{text}Cs1 Cs 0 0 0.2 1\nCl1 Cl 0.5 0.5 0.5 1\n", "salt.cif")
+    look = vizlight.look(path)
+    cell = look.drawing.layers[-1].mesh.run()
+    np.testing.assert_allclose(cell.bounds, (0, 4, 0, 4, 0, 7), atol=1e-4)
+    assert cell.n_lines == 12
+    assert look.key[0]["title"] == "CsCl"
+    # Without a formula it is the name of the file.
+    path.write_text(path.read_text().replace("_chemical_formula_sum 'Cs Cl'\n", ""))
+    assert vizlight.look(path).key[0]["title"] == "salt"
 
 
 def test_a_macromolecule_of_cif_is_that_of_pdb(tmp_path):

@@ -228,11 +228,11 @@ def _check_output(out: Output, *, several: bool) -> None:
             remedy = "name movies alone, or none" if is_movie else ""
             raise files.FileError(message("output", expected, f"'{path}'", remedy))
         if not path.is_dir():
-            files.check_output(path, FORMATS)
+            files.check_output(path, FORMATS, name="output")
     if out.paraview and several:
         raise value_error("paraview", "one file to light", "several")
     if out.paraview:
-        files.check_output(out.paraview, (".py",))
+        files.check_output(out.paraview, (".py",), name="paraview")
 
 
 def _outputs(look: Look, stem: str, out: Output, inputs: Sequence[Path]) -> list[list[Step]]:

@@ -386,6 +386,9 @@ def sun_direction(sun: object) -> Array:
     if angles.shape != (2,):
         expected = "two angles in degrees, (azimuth, altitude)"
         raise _check.value_error("sun", expected, _check.describe(sun))
+    if not (np.isfinite(angles).all() and abs(angles[1]) <= 90):
+        expected = "an azimuth and an altitude from -90 to 90 degrees"
+        raise _check.value_error("sun", expected, _check.describe(tuple(angles.tolist())))
     return sky.toward(angles[0], angles[1])
 
 

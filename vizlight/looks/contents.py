@@ -227,7 +227,15 @@ class Contents:
         """Return why arrays of one number a point or a cell are not shown, empty if one is."""
         if self.arrays:
             return ""
-        words = []
+        return ", ".join(
+            f"{name} has no number" if value is None else f"{name} is {value:g} everywhere"
+            for name, value in self.constants.items()
+        )
+
+    @cached_property
+    def constants(self) -> dict[str, float | None]:
+        """Arrays with one value by their names, and None for those without a finite one."""
+        single: dict[str, float | None] = {}
         for data in (self.mesh.point_data, self.mesh.cell_data):
             for name, rows in data.items():
                 values = np.asarray(rows)
@@ -236,10 +244,10 @@ class Contents:
                     continue
                 finite = values[np.isfinite(values)]
                 if not len(finite):
-                    words.append(f"{name} has no number")
+                    single[name] = None
                 elif finite.min() == finite.max():
-                    words.append(f"{name} is {finite[0]:g} everywhere")
-        return ", ".join(words)
+                    single[name] = float(finite[0])
+        return single
 
     def words_on_rounding(self) -> str:
         """Return which arrays vary by no more than the rounding of their numbers, empty if none."""

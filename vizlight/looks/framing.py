@@ -53,6 +53,11 @@ Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 #: Shares of the height within which points are a base, even or uneven; least size of one on which a
 #: thing stands, as a share of that of its shadow, and largest of the others, as one of this one's.
 FEET, STANDS, SMALL_BASE = (0.02, 0.05), 0.25, 0.25
+#: Formats of models of everyday things, which usually have y up.
+MODELS = {".obj", ".off"}
+#: Number of places of a surface that are mirrored, largest mean distance between it and its mirror
+#: image, in that of neighbouring places, and least of another image, in the distance of this one.
+MIRRORED, ALIKE, UNLIKE = 4000, 2.5, 1.5
 #: How much more the side of a body counts than other views, and how far the middle of what is on
 #: its left is from that of the body, as a share of its width.
 NEARLY_AS_LARGE, BESIDE = 1.3, 0.1
@@ -111,7 +116,9 @@ class Views:
 ISOMETRIC = Viewpoint((1.0, 1.0, 1.0), (0.0, 0.0, 1.0))
 
 
-def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Viewpoint:
+def eye_of(
+    mesh: pv.DataSet, contents: Contents, shown: str | None = None, *, is_model: bool = False
+) -> Viewpoint:
     """Return from where a mesh is seen best.
 
     Parameters
@@ -123,11 +130,14 @@ def eye_of(mesh: pv.DataSet, contents: Contents, shown: str | None = None) -> Vi
     shown : str, optional
         Name of an array: values, with much of their range to be seen, or the vectors of a volume,
         which should run across the picture.
+    is_model : bool, default: False
+        Whether it is a file of ``MODELS``: y is up, unless the surface is mirrored in y and not in
+        z, as things are in a plane that stands.
     """
     if contents.flat_axis is not None:
         return _above(mesh, contents.flat_axis)
     if mesh.n_cells and mesh.max_cell_dimensionality == 2 and isinstance(mesh, pv.PolyData):
-        return _of_surface(mesh, shown)
+        return _of_surface(mesh, shown, is_model)
     points = _finite(mesh.points)
     extent = np.ptp(points, axis=0) if len(points) else points
     if contents.dimension == 3 and len(extent) == 3 and extent.min() < LAYER * np.median(extent):
@@ -166,7 +176,7 @@ def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
     return Viewpoint(toward, up, True, words)
 
 
-def _of_surface(surface: pv.PolyData, shown: str | None) -> Viewpoint:
+def _of_surface(surface: pv.PolyData, shown: str | None, is_model: bool) -> Viewpoint:
     faces, corners = _triangles(surface)
     if not len(corners):
         return _of_points(_finite(surface.points))
@@ -180,7 +190,8 @@ def _of_surface(surface: pv.PolyData, shown: str | None) -> Viewpoint:
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.9 else (0.0, 0.0, 1.0)
         return Viewpoint(_vector(toward), up, False, "along its mean normal")
     values, edges = _values(surface, shown, faces), _creases(surface)
-    if not stands_along_y(corners, areas):
+    has_y_up = not _lies_along_y(corners, areas) if is_model else stands_along_y(corners, areas)
+    if not has_y_up:
         return _around(corners, normals, edges, _ways(), values)
     # As if y were z, and back.
     corners, normals, edges = (rows @ Y_TO_Z.T for rows in (corners, normals, edges))
@@ -223,6 +234,24 @@ def stands_along_y(corners: Array, areas: Array) -> bool:
         if share > STANDS and all(other < SMALL_BASE * share for other in others):
             return True
     return False
+
+
+def _lies_along_y(corners: Array, areas: Array) -> bool:
+    """Return whether a surface is its own mirror image in y and not in z."""
+    if not areas.sum() > 0:
+        return False
+    random = np.random.default_rng(0)
+    chosen = random.choice(len(corners), MIRRORED, p=areas / areas.sum())
+    places = np.einsum("sk,skx->sx", random.dirichlet(np.ones(3), MIRRORED), corners[chosen])
+    tree = scipy.spatial.cKDTree(places)
+    distances: Array = np.asarray(tree.query(places, k=2)[0])
+    apart = np.median(distances[:, 1])
+    ends = corners.min(axis=(0, 1)) + corners.max(axis=(0, 1))
+    across_y, across_z = (
+        np.mean(tree.query(np.where(np.arange(3) == axis, ends - places, places))[0])
+        for axis in (1, 2)
+    )
+    return bool(across_y < ALIKE * apart and across_z > UNLIKE * across_y)
 
 
 def _base(points: Array, middle: Array | None, axis: int, sign: int, foot: float) -> float:

@@ -546,7 +546,8 @@ def _decided(rule: Rule, case: Case, notes: Sequence[str], unread: int = 0) -> L
         assert drawing.doubt is not None
         drawing = drawing.doubt.instead()
     while True:
-        if case.wishes.wide and [key.get("question") for key in drawing.keys] != ["value"]:
+        keys = [key for key in drawing.keys if key.get("cmap") != surfaces.TITLE_ALONE["cmap"]]
+        if case.wishes.wide and [key.get("question") for key in keys] != ["value"]:
             # A disc has no room below a map.
             narrow = replace(case, wishes=replace(case.wishes, wide=False))
             return _decided(rule, narrow, notes, unread)
@@ -780,7 +781,11 @@ def _explicit(
         got = f"{array.name!r} with {array.role}" if array is not None else arrays or "no array"
         is_of_tangents = question in QUESTIONS and QUESTIONS[question].of_tangents
         remedy = "take question='shape'" if is_of_tangents else ""
-        raise value_error("array", f"{' or '.join(roles)} for {question!r}", got, remedy)
+        # Without such an array it is the question that does not fit.
+        name = "question" if contents.first(*roles) is None else "array"
+        if name == "question" and not remedy:
+            remedy = "take question='auto', or a mesh with such an array"
+        raise value_error(name, f"{' or '.join(roles)} for {question!r}", got, remedy)
     kind = next(rule.shown for rule in RULES if rule.fits(contents))
     rule = Rule(kind, lambda _: True, question, roles, recipe, f"{question} was asked for")
     return rule, Case(data, contents, wishes, question, chosen)

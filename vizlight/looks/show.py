@@ -97,7 +97,7 @@ def plot(
     if camera is not None and not hasattr(camera, "GetPosition"):
         raise _check.type_error("camera", "a pyvista.Camera", camera)
     if isinstance(screenshot, str | Path):
-        screenshot = check_output(screenshot, IMAGES)
+        screenshot = check_output(screenshot, IMAGES, name="screenshot")
     if jupyter_backend is not None:
         _check.text("jupyter_backend", jupyter_backend)
     for name in ("off_screen", "notebook"):

@@ -74,7 +74,14 @@ class Step:
                 warnings.simplefilter("ignore")
             result = self._called()
         if self.asked[0] and not result.n_points:
-            raise value_error(self.asked[0], "a value that leaves points", self.asked[1])
+            expected, remedy = "a value that leaves points", ""
+            if self.path in {".slice", ".clip"}:
+                mesh: Foreign = run(self.arguments[0])
+                bounds: Sequence[float] = mesh.bounds
+                ends = zip("xyz", bounds[::2], bounds[1::2], strict=True)
+                runs = ", ".join(f"{axis} from {low:.4g} to {high:.4g}" for axis, low, high in ends)
+                remedy = f"the mesh has {runs}"
+            raise value_error(self.asked[0], expected, self.asked[1], remedy)
         for key, value in self.attributes.items():
             setattr(result, key, value)
         return result

@@ -59,6 +59,8 @@ _TT = 32
 STRUCTURE = "AnatomicalStructurePrimary"
 #: Ends of names of CIFTI files, whose maps have names of their own.
 MAPS = (".dscalar.nii", ".dlabel.nii")
+#: Units of time as NIfTI names them.
+_SECONDS = {"sec": "s", "msec": "ms", "usec": "µs"}
 #: Note on values at the points of a surface, such as its curvature.
 NO_SURFACE = "values over a surface, without one: read the surface, and pass this file as overlay="
 
@@ -233,7 +235,14 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
         raise ValueError(NO_SURFACE)
     grid = turned(rows, affine, FORMATS.get(path.suffix.lower(), "NIFTI"))
     mark_as_body(grid, "affine", affine)
-    return grid if steps < 2 else series.marked(grid, times, index)
+    if steps < 2:
+        return grid
+    units: Foreign = getattr(image.header, "get_xyzt_units", lambda: ("", ""))
+    said = meaning.of(grid)
+    said.time = _SECONDS.get(units()[-1], "")
+    meaning.attach(grid, said)
+    series.marked(grid, times, index)
+    return grid
 
 
 def turned(rows: AnyArray, affine: AnyArray, name: str) -> pv.ImageData | pv.StructuredGrid:

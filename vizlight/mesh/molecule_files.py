@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pyvista as pv
+import scipy
 
 from vizlight._types import Array, Indices
 from vizlight.mesh import file_parts, meaning, molecules
@@ -28,7 +29,7 @@ def of_gro(path: Path) -> pv.PolyData:
     """Return the first frame of a GROMACS file in angstroms, its bonds by the distances of atoms.
 
     The names of atoms give their elements. Where no atoms are joined they are beads, which have no
-    element.
+    element, and the usual distance to the nearest one as their radius.
 
     Parameters
     ----------
@@ -75,9 +76,18 @@ def of_gro(path: Path) -> pv.PolyData:
         [residue for residue, _ in names],
     )
     if not mesh.n_lines:
-        del mesh.point_data["atom_type"], mesh.point_data["radius"]
+        del mesh.point_data["atom_type"]
+        mesh.point_data["radius"] = np.full(count, _apart(np.asarray(mesh.points)))
         mesh.set_active_scalars(molecules.RESIDUE)
     return mesh
+
+
+def _apart(places: Array) -> float:
+    """Return the median distance of nearest neighbours, in angstroms."""
+    if len(places) < 2:
+        return _NANOMETRE
+    distances: Array = np.asarray(scipy.spatial.cKDTree(places).query(places, k=2)[0])
+    return float(np.median(distances[:, 1]))
 
 
 def _element(residue: str, name: str) -> str:
@@ -113,7 +123,9 @@ def of_mol2(path: Path) -> pv.PolyData:
     _check_counts(lines[2:3], atoms, bonds)
     elements = [" ".join(row[5:6]).partition(".")[0] for row in atoms]
     pairs = _pairs([row[0] for row in atoms], [row[1:3] for row in bonds])
-    mesh = molecules.joined(elements, _numbers([row[2:5] for row in atoms]), pairs)
+    mesh = molecules.joined(
+        elements, _numbers([row[2:5] for row in atoms]), pairs, name=" ".join(lines[1:2])
+    )
     if all(len(row) > 8 for row in atoms):
         mesh.point_data["charge"] = _numbers([row[8:9] for row in atoms])[:, 0]
     return mesh
@@ -156,7 +168,7 @@ def of_mol(path: Path) -> pv.PolyData:
         places = [[line[:10], line[10:20], line[20:30]] for line in rows[:n_atoms]]
         ends = [[line[:3].strip(), line[3:6].strip()] for line in rows[n_atoms:]]
         pairs = _pairs([str(i + 1) for i in range(n_atoms)], ends)
-    return molecules.joined(elements, _numbers(places), pairs)
+    return molecules.joined(elements, _numbers(places), pairs, name=lines[0])
 
 
 def _lines(path: Path) -> list[str]:

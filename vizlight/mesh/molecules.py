@@ -31,6 +31,12 @@ _NUMBERS = {"residue": (22, 26, 0), "occupancy": (54, 60, 1.0), "b_factor": (60,
 _STRUCTURES = (("HELIX ", ribbons.HELIX, 19, 21, 33), ("SHEET ", ribbons.STRAND, 21, 22, 33))
 #: Field arrays of a volume with the atomic numbers and the places of the molecule in it.
 NUMBERS, PLACES = "atom_numbers", "atom_places"
+#: Field array of a crystal with the edges of its cell, and attribute of ``atom_type`` with the name
+#: of the molecule or the formula of the crystal, and items of CIF that have it.
+CELL, NAME = "unit_cell", "molecule"
+_FORMULAS = (
+    "_chemical_name_mineral", "_chemical_formula_structural", "_chemical_formula_sum",
+)  # fmt: skip
 #: Name of their marks, and number of them from which a molecule is a long chain.
 BACKBONE, LONG = "backbone_mask", 60
 #: Mark of the oxygen of an amino acid, and its largest distance in angstroms from its carbon.
@@ -160,7 +166,8 @@ def of_cif(path: Path) -> pv.PolyData:
     -------
     pyvista.PolyData
         Bonds and atoms as of :func:`of_pdb`; those of a crystal, in all places of its cell by its
-        symmetry, with ``occupancy`` alone. Of elements that share a place the most frequent counts.
+        symmetry, with ``occupancy`` alone and the field array ``unit_cell``, its edges. Of elements
+        that share a place the most frequent counts.
 
     Raises
     ------
@@ -176,9 +183,11 @@ def of_cif(path: Path) -> pv.PolyData:
         crystals = [gemmi.make_small_structure_from_block(each) for each in document]
     if structure is not None:
         return _macromolecule(structure, path)
-    crystal = next((each for each in crystals if len(each.sites)), None)
-    if crystal is None:
+    number = next((i for i, each in enumerate(crystals) if len(each.sites)), None)
+    if number is None:
         raise ValueError("it has no atoms")
+    crystal, items = crystals[number], map(document[number].find_value, _FORMULAS)
+    words = (gemmi.cif.as_string(item).replace(" ", "") for item in items if item)
     sites = sorted(crystal.get_all_unit_cell_sites(), key=lambda site: -float(site.occ))
     shares = np.array([site.fract.tolist() for site in sites]) % 1
     # Numbers such as 0.3333 are rounded; what lies on a side of the cell lies on the other, too.
@@ -190,7 +199,9 @@ def of_cif(path: Path) -> pv.PolyData:
         rows = np.concatenate([rows, rows[low]])
         shares = np.concatenate([shares, shares[low] + np.eye(3)[axis]])
     edges = np.array(crystal.cell.orth.mat.tolist())
-    mesh = joined([sites[row].element.name for row in rows], (shares @ edges.T).tolist())
+    elements = [sites[row].element.name for row in rows]
+    mesh = joined(elements, (shares @ edges.T).tolist(), name=next(filter(None, words), ""))
+    mesh.field_data[CELL] = edges.T
     mesh.point_data["occupancy"] = [sites[row].occ for row in rows]
     return mesh
 
@@ -524,6 +535,8 @@ def joined(
     elements: Sequence[str],
     places: Sequence[Sequence[float]] | Array,
     pairs: Indices | None = None,
+    *,
+    name: str = "",
 ) -> pv.PolyData:
     """Return atoms joined by bonds, those of the file or else by their distances.
 
@@ -535,6 +548,8 @@ def joined(
         Places in angstroms.
     pairs : ndarray of int, shape (M, 2), optional
         Atoms that are joined.
+    name : str, optional
+        Name of the molecule; one without a letter is none.
 
     Raises
     ------
@@ -547,14 +562,14 @@ def joined(
     if not len(places):
         raise ValueError("it has no atoms")
     table, points = vtkPeriodicTable(), np.asarray(places, dtype=np.float64)
-    numbers = {name: table.GetAtomicNumber(name) if name else 0 for name in set(elements)}
-    of_atoms = np.array([numbers[name] for name in elements], dtype=np.intp)
+    numbers = {each: table.GetAtomicNumber(each) if each else 0 for each in set(elements)}
+    of_atoms = np.array([numbers[each] for each in elements], dtype=np.intp)
     if pairs is None:
         pairs = _bonds(of_atoms, points)
     mesh = _of_pairs(points, pairs)
     mesh.point_data["atom_type"] = of_atoms
-    radii = {name: table.GetVDWRadius(numbers[name]) for name in numbers}
-    mesh.point_data["radius"] = [radii[name] for name in elements]
+    radii = {each: table.GetVDWRadius(numbers[each]) for each in numbers}
+    mesh.point_data["radius"] = [radii[each] for each in elements]
     mesh.set_active_scalars("atom_type")
     kinds = []
     for number in sorted({*numbers.values()}):
@@ -569,6 +584,9 @@ def joined(
     said.add_array("atom_type", {"long_name": "element"})
     said.add_kinds("atom_type", kinds)
     said.arrays["atom_type"]["long_name"] = "element"
+    if re.search("[A-Za-z]", name):
+        # In a title VTK takes a bar for the end of a column.
+        said.arrays["atom_type"][NAME] = " ".join(name.replace("|", " ").split())
     meaning.attach(mesh, said)
     return mesh
 

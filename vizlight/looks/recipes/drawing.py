@@ -24,7 +24,7 @@ from vizlight.files import FORMATS
 from vizlight.looks import levels, map_parts
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
-from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around, eye_of
+from vizlight.looks.framing import ISOMETRIC, MODELS, Viewpoint, eye_around, eye_of
 from vizlight.looks.ranges import range_of_scan, range_shown
 from vizlight.looks.steps import DISPLACED, Step
 from vizlight.maps import MISSING
@@ -90,6 +90,10 @@ ALONG = 0.99
 OVER_TIME = re.compile(r"\btime: (mean|maximum|minimum|median|sum|variance)\b(?! within)")
 #: Names of velocities, in lower case.
 VELOCITY = re.compile(r"u|v|vel|u,v(,w)?|uvw?|vectors?|.*(veloc|vitesse|wi?nd|flow|current).*")
+#: Names of displacements, in lower case, which are alike over a part of a solid at most.
+DISPLACEMENT = re.compile(
+    r"(.*[^a-z])?[xyz]?(d(e?pl|i?spl?|isplacements?)|deformation)[xyz]?(,.*)?"
+)
 #: Start of dates that are no dates, and words of means of many years, whose steps are of no year.
 NO_DATE = ("0000-", "0001-")
 OF_MANY_YEARS = re.compile(r"long[ -]?term mean|climatolog")
@@ -361,7 +365,8 @@ class Case:
             return eye_around(self.surface.run(), cut=True)
         array = self.array
         shown = None if array is None or array.role in ("kinds", "colors") else array.name
-        return eye_of(mesh.run(), self.contents, shown)
+        is_model = not MODELS.isdisjoint(map(str.lower, path_of(self.data).suffixes))
+        return eye_of(mesh.run(), self.contents, shown, is_model=is_model)
 
     @cached_property
     def map_frame(self) -> Step | None:
@@ -491,8 +496,9 @@ class Case:
             # A room needs no key.
             key = 0.0
         elif self.question == "none" and self.array is None:
-            # Nor does a plane without data, which has a title where its file or a wish names it.
-            key = 0.0 if file_named(self.data) or self.wishes.picture.get("title") else None
+            # Nor does a plane without data, which may have a title.
+            names = file_named(self.data), self.wishes.picture.get("title")
+            key = 0.0 if any([*names, *self.contents.constants]) else None
         return self.wishes.camera(mesh, eye, axes=axes, key=key)
 
     @cached_property
@@ -718,8 +724,13 @@ def _in_unit(values: Sequence[float], unit: float) -> tuple[float, ...]:
 
 def file_named(mesh: Step) -> str:
     """Return the name, without its suffixes, of the file that a step begins with, if it does."""
+    return path_of(mesh).name.partition(".")[0]
+
+
+def path_of(mesh: Step) -> Path:
+    """Return the path of the file that a step begins with, one without a name if it does not."""
     *_, source = mesh.chain()
-    return Path(source).name.partition(".")[0] if isinstance(source, str | Path) else ""
+    return Path(source) if isinstance(source, str | Path) else Path()
 
 
 def with_file(mesh: Step, title: str) -> str:
@@ -727,10 +738,17 @@ def with_file(mesh: Step, title: str) -> str:
     return ", ".join(filter(None, [file_named(mesh), title]))
 
 
-def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | None = None) -> str:
+def titled(
+    mesh: pv.DataSet,
+    name: str,
+    *,
+    course: bool = False,
+    value: float | None = None,
+    sign: str = " =",
+) -> str:
     """Return the name of an array with its date and its unit, where the mesh says them.
 
-    The course of a vector has no unit; that of a level stands after its number.
+    The course of a vector has no unit; that of a value stands after its number.
     """
     attributes = meaning.of(mesh).arrays.get(name.partition(",")[0], {})
     word, of_brains = brains.word_and_unit(name) if brains.hemisphere(mesh) else ("", "")
@@ -743,15 +761,15 @@ def titled(mesh: pv.DataSet, name: str, *, course: bool = False, level: float | 
     if is_word and title.isupper() and len(title) > LONGEST_SHORT:
         title = title.lower()
     unit = "" if unit == "1" else meaning.written(unit)
-    if level is not None:
-        title = f"{title}, isosurface at {levels.number(level)} {unit}".rstrip()
+    if value is not None:
+        title = f"{title}{sign} {levels.number(value)} {unit}".rstrip()
     if (text := meaning.of(mesh).level) and attributes.get("level") != "none":
         title += f" at {text}"
     if series.TIME in mesh.field_data:
         many = OF_MANY_YEARS.search(title.lower()) is not None
         date = _dated(mesh, attributes.get("cell_methods", ""), of_many_years=many)
         title += f", {date}" * bool(date)
-    return f"{title} ({unit})" if unit and not course and level is None else title
+    return f"{title} ({unit})" if unit and not course and value is None else title
 
 
 def _dated(mesh: pv.DataSet, methods: str, *, of_many_years: bool = False) -> str:
@@ -820,8 +838,13 @@ def times_as_high(factor: float) -> str:
 
 
 def titled_length(mesh: pv.DataSet, name: str) -> str:
-    """Return the title of the lengths of vectors: their speed, if their unit or name is of one."""
+    """Return the title of the lengths of vectors: their speed, if their unit or name is of one.
+
+    The length of a displacement is a displacement.
+    """
     title = titled(mesh, name)
+    if DISPLACEMENT.fullmatch(name.lower()):
+        return f"displacement{title.removeprefix(name)}" if title.startswith(name) else title
     is_speed = title.lower().endswith("/s)") or VELOCITY.fullmatch(name.lower())
     # The speed of a velocity is a speed.
     words = re.sub(r"(?i)^of velocity(?= \(|$)", "", f"of {title}").strip()

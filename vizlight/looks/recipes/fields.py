@@ -20,6 +20,7 @@ from vizlight.filters.streamlines import own_name
 from vizlight.looks.levels import sampled_corners
 from vizlight.looks.recipes.drawing import (
     BESIDE,
+    DISPLACEMENT,
     Doubt,
     Drawing,
     Layer,
@@ -183,7 +184,9 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     if bent:
         scene = case.exposed(mesh, camera, "value", **light)
     finite = _lengths(mesh.run(), array.name)
-    colors, note = case.ranged(finite, f"the length of {array.name}", SPEED, lengths=True)
+    # Displacements are compared with each other, and not in decades.
+    skewed = DISPLACEMENT.fullmatch(array.name.lower()) is None
+    colors, note = case.ranged(finite, f"the length of {array.name}", SPEED, lengths=skewed)
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     layers = [Layer(mesh, shown | case.wishes.drawn(light)), *case.edges(camera)]
     if strokes is not None:

@@ -19,6 +19,7 @@ from vizlight.looks.recipes.drawing import (
     Drawing,
     Layer,
     colors_of_kinds,
+    file_named,
     titled_length,
     with_file,
 )
@@ -169,7 +170,8 @@ def _somas(case: Case) -> list[Layer]:
 def is_molecule(mesh: pv.DataSet) -> bool:
     """Return whether a mesh is a molecule, with few enough atoms for balls, and sticks if any."""
     arrays = mesh.point_data
-    is_one = isinstance(mesh, pv.PolyData) and {"atom_type", "radius"} <= set(arrays)
+    kinds = {"atom_type", molecules.RESIDUE} & set(arrays)
+    is_one = isinstance(mesh, pv.PolyData) and "radius" in arrays and bool(kinds)
     if not is_one or np.ndim(arrays["radius"]) != 1:
         return False
     return mesh.n_points <= (MOST_BALLS if mesh.n_lines else MOST_ALONE)
@@ -202,8 +204,31 @@ def molecule(case: Case, size: float = 1.0) -> Drawing:
     if case.contents.flat_axis == 2 and wishes.view is None and wishes.frame is None:
         # A formula is read from above.
         wishes = replace(wishes, view="above")
-    contents = Contents(solid.run())
-    return surfaces.values(replace(case, data=solid, contents=contents, wishes=wishes))
+    balls_and_sticks = replace(case, data=solid, contents=Contents(solid.run()), wishes=wishes)
+    cell = _cell(atoms)
+    if cell is not None and wishes.frame is None:
+        both = Step("", "pyvista.MultiBlock", [solid, cell])
+        frame = wishes.camera(both, balls_and_sticks.eye(solid))
+        balls_and_sticks = replace(balls_and_sticks, wishes=replace(wishes, frame=frame))
+    drawing = surfaces.values(balls_and_sticks)
+    said = meaning.of(atoms.run()).arrays.get(array.name, {})
+    title = said.get(molecules.NAME) or file_named(atoms)
+    keys = drawing.keys
+    if array.name == "atom_type" and title:
+        # Symbols of elements need no title.
+        keys = [key | {"title": title} for key in keys]
+    return replace(drawing, layers=[*drawing.layers, *case.strokes([cell])], keys=keys)
+
+
+def _cell(atoms: Step) -> Step | None:
+    """Return the step that makes the edges of the cell of a crystal, None for other atoms."""
+    edges = atoms.run().field_data.get(molecules.CELL)
+    if edges is None:
+        return None
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.round(np.transpose(edges), 4)
+    unit = Step("", ".outline", Step("", "pyvista.Box", (0.0, 1.0) * 3))
+    return Step("cell", ".transform", unit, matrix.tolist(), inplace=False)
 
 
 def backbone(case: Case) -> Drawing:

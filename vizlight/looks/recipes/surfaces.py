@@ -229,7 +229,8 @@ def surface(case: Case) -> Drawing:
         drawn |= _edges_of_cells(mesh)
     title = words if name else "; ".join(filter(None, [file_named(mesh), _size_of(case)]))
     if name and case.wishes.part.get("level") is not None:
-        title = titled(mesh.run(), name, level=case.wishes.part["level"])
+        level = case.wishes.part["level"]
+        title = titled(mesh.run(), name, value=level, sign=", isosurface at")
     keys = _keys(case, scene, title)
     layers = [Layer(mesh, drawn), *case.edges(camera)]
     return Drawing(layers, camera, scene, lit, words, keys, kind=mesh)
@@ -255,6 +256,8 @@ def _size_of(case: Case) -> str:
 
 def plane(case: Case) -> Drawing:
     """Draw a plane without data, which no light can shape: grey, with the edges of its cells.
+
+    An array with one value is the title.
 
     Sizes of cells are shown, near most of the cells, where many differ.
     """
@@ -283,8 +286,13 @@ def plane(case: Case) -> Drawing:
     border = Step("borders", "files.borders", mesh)
     outline = case.strokes([border] if border.run().n_cells else [])
     layers = [Layer(mesh, {"scene": scene} | drawn), *outline]
-    keys = (TITLE_ALONE | {"title": name},) if (name := file_named(mesh)) else ()
-    return Drawing(layers, camera, scene, case.lit(mesh, scene), "plane", keys)
+    constants = case.contents.constants.items()
+    title = ", ".join(
+        titled(case.data.run(), name, value=value) for name, value in constants if value is not None
+    )
+    title = title or file_named(mesh)
+    keys = [TITLE_ALONE | {"title": title}] if title else ()
+    return Drawing(layers, camera, scene, case.lit(mesh, scene), "plane", keys=keys)
 
 
 def fur(case: Case) -> Drawing:

@@ -27,7 +27,7 @@ from vizlight.mesh import density_maps, meaning, molecules, montages
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Bools, Foreign
+    from vizlight._types import Array, Bools, Foreign, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
@@ -43,6 +43,10 @@ RINGING = 0.1
 #: Least share of its box that what is above the lowest value of a scan fills where it is cut open,
 #: the points along each axis by which that is found, and the number of values that are looked at.
 COMPACT, STEPS, SAMPLE = 0.25, 50, 100_000
+#: Share of the values of a scan above a level from which it encloses those below it.
+MOSTLY = 0.75
+#: Share of the values above a level up to which they are on its isosurface.
+ON_LEVEL = 1e-3
 #: Colour of the skin.
 SKIN = "#d9cabd"
 #: Direction toward the eye that sees a face, in the axes of a body.
@@ -55,8 +59,10 @@ ENCLOSED = 0.85
 #: Colours of a level below and above 0.
 LOBES = ["#4169cf", "#d63a3a"]
 #: Level of maps of densities above their mean, in their standard deviations, where nothing is
-#: steeper: crystallographers take 1 to 3.
+#: steeper: crystallographers take 1 to 3. Level of both signs of maps of differences of densities;
+#: most of their mean, in their deviation, and least ratio of the sizes of their ends.
 SIGMAS = 2.0
+SIGMAS_OF_DIFFERENCES, MEAN_OF_DIFFERENCES, ENDS_OF_DIFFERENCES = 3.0, 0.1, 0.5
 #: Deviation of the filter that smooths scans, in voxels, and the note on it.
 SMOOTH = 0.7
 SMOOTHED = f"the values are smoothed by {SMOOTH:g} voxels"
@@ -103,8 +109,12 @@ def isosurface(case: Case) -> Drawing:
         # A sheet of slices has no place among other meshes.
         return stack(case) if case.wishes.frame is None else slices(case)
     level = _level(case, array)
+    # Where values are shown there is room for their key.
+    valued = replace(case, question="value")
     if isinstance(level, str):
-        return _cut_open(case) or slices(case, level)
+        return _cut_open(valued) or slices(valued, level)
+    if not level.is_sure and case.is_of_body and _are_low_inside(case, array, level.at):
+        return slices(valued, "; the isosurface would enclose the lowest values")
     part = dict(case.wishes.part) | {"contour": array.name, "level": level.at}
     whole = replace(case, wishes=replace(case.wishes, part=part))
     mesh = whole.wishes.isosurface(level.volume)
@@ -112,12 +122,12 @@ def isosurface(case: Case) -> Drawing:
     if has_molecule:
         mesh = Step("outward", ".compute_normals", mesh, **OUTWARD)
     if not level.is_sure and _is_crumbs(mesh.run()):
-        return _cut_open(case) or slices(case, "; isosurfaces are crumbs")
+        return _cut_open(valued) or slices(valued, "; isosurfaces are crumbs")
     # One that is asked for besides is shown on it.
     second = case.contents.named(str(case.wishes.picture.get("scalars") or ""))
     is_free = not level.is_sure and not has_molecule and not isinstance(level.at, tuple)
     if second is None and is_free and not _is_of_scanner(case, array):
-        opened = _opened(case, level)
+        opened = _opened(valued, level)
         if opened is not None:
             return replace(opened, notes=[*opened.notes, *level.notes])
     if not level.is_sure and _is_scan(case, array):
@@ -146,7 +156,7 @@ def isosurface(case: Case) -> Drawing:
     if has_molecule:
         drawing = _around_molecule(case, drawing)
     if not level.is_sure and _is_rough(surface, mesh, drawing.camera):
-        drawing = replace(drawing, doubt=Doubt((figure,), lambda: slices(case)))
+        drawing = replace(drawing, doubt=Doubt((figure,), lambda: slices(valued)))
     return replace(
         drawing,
         words=f"isosurface {array.name} = {words}",
@@ -174,6 +184,10 @@ def _level(case: Case, array: Named) -> _Level | str:
         return _Level((-size, size), volume, notes, not is_scan, is_sure=True)
     # What stands out, such as a particle, is as that of a scan; that of a crystal is at its place.
     is_density = _is_density(case, array)
+    if is_density and _are_differences(values):
+        size = float(f"{SIGMAS_OF_DIFFERENCES * values.std():.2g}")
+        notes = [f"the levels are {SIGMAS_OF_DIFFERENCES:g} standard deviations from 0"]
+        return _Level((-size, size), case.data, notes, boxed=True, is_sure=True)
     if is_density and levels.best_level(case.data.run(), array.name)[1] < levels.GOOD:
         level = float(f"{values.mean() + SIGMAS * values.std():.2g}")
         is_image = isinstance(case.data.run(), pv.ImageData)
@@ -192,6 +206,14 @@ def _level(case: Case, array: Named) -> _Level | str:
         return f"; no isosurface stands out (the steepest is {contrast:.1f} times the mean)"
     volume = _closed(volume, array.name, level) if is_scan else volume
     return _Level(level, volume, notes, boxed=not is_scan, is_sure=not is_auto)
+
+
+def _are_low_inside(case: Case, array: Named, level: float | tuple[float, float]) -> bool:
+    """Return whether an isosurface encloses the lesser part of a scan, of low values.
+
+    What it would show of a body is a gap.
+    """
+    return not isinstance(level, tuple) and bool(np.mean(_sample(case, array) > level) > MOSTLY)
 
 
 def _size_of_both_signs(values: Array, volume: Step, array: Named) -> float | None:
@@ -336,10 +358,10 @@ def _opened(case: Case, level: _Level) -> Drawing | None:
     camera = case.camera(box if boxed else outside, eye, boxed=boxed)
     drawing = _of_cut(case, cut, outside, camera, cut)
     first, *strokes = drawing.layers
-    lit = replace(case, data=outside, contents=Contents(outside.run()), question="value")
+    lit = replace(case, data=outside, contents=Contents(outside.run()))
     light = wishes.light_of_surface()
     lamp = {"scene": lit.exposed(outside, camera, "lamp", **light)} | wishes.drawn(light)
-    layers = [first, Layer(outside, first.keywords | lamp), *strokes]
+    layers = [first, *_outside_of(case, outside, first.keywords | lamp, at), *strokes]
     (key,) = drawing.keys
     _, unit = parted(str(key["title"]))
     title = f"{key['title']}; surface: {levels.number(at)} {unit}".rstrip()
@@ -349,6 +371,27 @@ def _opened(case: Case, level: _Level) -> Drawing | None:
         words=f"isosurface {array.name} = {levels.number(at)}, with the values inside",
         keys=[key | {"title": title}],
     )
+
+
+def _outside_of(case: Case, outside: Step, drawn: Keywords, level: float) -> list[Layer]:
+    """Return the layers of an isosurface and of the sides of its volume.
+
+    In the grey of its level, which is nearly that of air, the shape of a scan would be black.
+    """
+    name = case.needed_array.name
+    high = range_of(outside.run(), name)[1]
+    end = level + ON_LEVEL * (range_of(case.data.run(), name)[1] - level)
+    if not _is_gray(case, case.needed_array) or "cmap" in case.wishes.colors:
+        return [Layer(outside, drawn)]
+    names = ("scene", "pickable", *case.wishes.drawn(case.wishes.light_of_surface()))
+    plain = {key: value for key, value in drawn.items() if key in names} | {"color": SKIN}
+    if high <= end:
+        return [Layer(outside, plain)]
+    skin, sides = (
+        Step(part, ".clip_scalar", outside, scalars=name, value=end, invert=part == "skin")
+        for part in ("skin", "sides")
+    )
+    return [Layer(skin, plain), Layer(sides, drawn)]
 
 
 def _parts_of_cut(
@@ -489,6 +532,13 @@ def _is_scan(case: Case, array: Named) -> bool:
         and len(case.contents.arrays) == 1
         and min(mesh.dimensions) > VOXELS
     )
+
+
+def _are_differences(values: Array) -> bool:
+    """Return whether densities are differences of two maps: around 0, and as far below as above."""
+    low, high = float(values.min()), float(values.max())
+    is_even = min(-low, high) > ENDS_OF_DIFFERENCES * max(-low, high)
+    return is_even and abs(float(values.mean())) < MEAN_OF_DIFFERENCES * float(values.std())
 
 
 def _is_density(case: Case, array: Named) -> bool:
