@@ -583,6 +583,8 @@ def test_warnings_of_what_is_no_part_of_a_mesh_refuse_no_file(said, tmp_path, mo
         vtkOutputWindow.GetInstance().DisplayWarningText(f"{said}\n")
         return pv.Sphere()
 
+    # Another process would not have this reader.
+    monkeypatch.setattr(files._trials, "are_needed", lambda: False)
     monkeypatch.setattr(files.foreign_files, "read", found)
     (tmp_path / "a.cgns").touch()
     assert vizlight.read(tmp_path / "a.cgns").n_points == pv.Sphere().n_points
@@ -603,6 +605,8 @@ def test_arrays_with_keys_of_another_program_are_read(tmp_path):
 def test_the_parts_of_a_partitioned_dataset_become_one_grid(tmp_path, monkeypatch):
     parts = pv.PartitionedDataSet([volume().threshold([0, 3]), volume().threshold([3, 9])])
     parts.field_data["TimeValue"] = [7.0]
+    # Another process would not have this reader.
+    monkeypatch.setattr(files._trials, "are_needed", lambda: False)
     monkeypatch.setattr(files.foreign_files, "read", lambda path, time, **options: parts)
     (tmp_path / "a.vtpd").touch()
     mesh = vizlight.read(tmp_path / "a.vtpd")
@@ -699,6 +703,8 @@ def test_sets_of_exodus_are_no_blocks(tmp_path, monkeypatch):
             "Side Sets": pv.MultiBlock({"top": plane.copy(), "edge": pv.Line()}),
         }
     )
+    # Another process would not have this reader.
+    monkeypatch.setattr(files._trials, "are_needed", lambda: False)
     monkeypatch.setattr(files.foreign_files, "read", lambda path, time, **options: found)
     # What the reader gives counts, not the name.
     path = tmp_path / "a.vtpd"
