@@ -132,6 +132,7 @@ STATED = {
     "a lamp among isotropic lines": ("isotropic", (0.1, 0.05, -0.08), True, 0.01),
     "a lamp in a layer": ("layered", (0.1, 0.05, 0.125), True, 0.01),
     "a lamp close outside": ("isotropic", (0, 0, 1.1), True, 0.01),
+    "a lamp outside, oblique to the axes": ("isotropic", (0.7, -0.45, 0.7), True, 0.01),
     "a lamp at the end of parallel lines": ("parallel", (1.25, 0, 0), True, 0.01),
 }
 
@@ -152,6 +153,16 @@ def test_the_mean_share_of_each_case_is_as_right_as_stated(name, seed, claim):
     assert error.std() / np.sqrt(len(error)) < 0.012
     claim(np.abs(error).max(), 0.06, "single")
     assert f"{most:g}" in vizlight.Bundle.__doc__.partition("Notes")[2]
+
+
+def test_a_lamp_far_away_in_any_direction_is_a_light_at_infinity():
+    random, diameter, length = np.random.default_rng(8), 0.02, 0.5
+    for toward in unit(random.normal(size=(3, 3))):
+        middles, tangents = some_lines("isotropic", random)
+        lines = pieces(middles, tangents, length, 2 * diameter)
+        targets = lines.targets(middles, tangents, straight_halves(tangents, length, 0.0))
+        left = lines.dimmed(targets, diameter, [(toward, False), (1e4 * toward, True)])
+        assert abs(np.diff(left.mean(axis=0))) < 0.01
 
 
 def test_a_straight_line_does_not_dim_itself():

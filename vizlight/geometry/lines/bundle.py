@@ -747,9 +747,17 @@ def depths(
         Voxels at the points.
     """
     centre = np.asarray(lamp, np.float64)[:, np.newaxis]
-    at = places - centre
+    # A face of the cube is turned to the middle of the pieces: from afar it is the box of a light
+    # at infinity, and no direction in space is preferred.
+    ahead = (
+        np.mean(middles, axis=1, dtype=np.float64) - centre[:, 0] if middles.size else centre[:, 0]
+    )
+    frame = _frame(ahead) if np.linalg.norm(ahead) > NARROWEST else np.eye(3)
+    at, middles, vectors = (
+        np.einsum("ij,jk->ik", frame, rows) for rows in (places - centre, middles - centre, vectors)
+    )
     # Distances of the pieces and of the points from the light.
-    gone, far = size(middles - centre), size(at)
+    gone, far = size(middles), size(at)
     out = np.zeros(at.shape[1], np.float32)
     place, axes = np.zeros((2, at.shape[1]), np.float32), np.zeros((3, 3, at.shape[1]), np.float32)
     area: Array = np.ones(at.shape[1], np.float32)
@@ -761,7 +769,7 @@ def depths(
     # 1 where that is less.
     width = 1 / max(float(np.median(gone)), 1.0)
     discs = np.zeros(gone.size, np.float32) if discs is None else discs
-    middles, vectors, share, discs = _for_cones(middles - centre, vectors, width, thick, discs)
+    middles, vectors, share, discs = _for_cones(middles, vectors, width, thick, discs)
     gone = size(middles)
     # |w x t| times the length of a piece, for a direction w that differs from piece to piece.
     across = size(np.cross(vectors, middles, axis=0))
@@ -793,6 +801,7 @@ def depths(
                     axes[row, axis, rows] = -side * seen[row] / height
                 # The area that a cone has across the light at the point, as for pieces below.
                 area[rows] = (width * height) ** 2 * height / np.maximum(far[rows], NARROWEST)
+    axes = np.einsum("ijk,jl->ilk", axes, frame).astype(np.float32)
     return out, VoxelColumns(place, axes, np.maximum(area, NARROWEST**2))
 
 
