@@ -257,8 +257,6 @@ class Program {
     source.Vertex = source.Vertex.replace('//STROKE', () => (capsules ? CAPSULE : strokes ? STROKE : ''));
     if (capsules) source.Fragment = source.Fragment.replace('void main() {', () => `${CAPSULE_FRAGMENT}\nvoid main() {${CAPSULE_SHAPE}`).replace(/}\s*$/, () => CAPSULE_GROUND);
     if (more) source.Vertex = source.Vertex.replace('void main() {', more);
-    // At the border of a surface, light is of the part of a pixel that is covered, not of its middle beyond.
-    if (!strokes) ['Vertex', 'Fragment'].forEach((stage) => { source[stage] = source[stage].replace(/varying (?=\w+ viz)/g, 'centroid varying '); });
     this.gl = gl;
     this.program = gl.createProgram();
     ['Vertex', 'Fragment'].forEach((stage) => {
