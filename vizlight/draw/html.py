@@ -32,7 +32,7 @@ from vizlight.draw.keywords import is_cloud
 from vizlight.draw.live import NORMALS, TANGENTS, Fragments, LightAt, Live, items, matrix_of
 from vizlight.draw.margins import MarginBar
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
-from vizlight.draw.strokes import DEPTH, line_samples
+from vizlight.draw.strokes import DEPTH, line_samples, shares_of
 from vizlight.files import check_output, replace_file
 from vizlight.filters import relight
 from vizlight.filters.key import annotated
@@ -420,8 +420,8 @@ def _stroked(live: Live, actor: vtkActor) -> dict[str, object]:
         entry |= {"halo": live.stroke.halo, "depth": DEPTH}
     if live.stroke.width is None:
         return entry
-    shares = live.picked(np.nan_to_num(live.source.mesh.point_data[live.stroke.width]))
-    entry["widths"] = _packed(np.clip(255 * shares, 0, 255)[:, np.newaxis], "u1")
+    shares = live.picked(shares_of(live.source.mesh, live.stroke.width))
+    entry["widths"] = _packed((255 * shares)[:, np.newaxis], "u1")
     if "Normals" in live.source.mesh.point_data:
         # Of the surface on which the strokes lie, from 0 to 255.
         leans = live.picked(np.asarray(live.source.mesh["Normals"])) @ np.linalg.inv(

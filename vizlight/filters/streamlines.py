@@ -359,6 +359,12 @@ def own_name(mesh: pv.DataSet, name: str) -> str:
     return name if name not in mesh.point_data else f"vizlight {name}"
 
 
+def speed_of(lines: pv.DataSet) -> str | None:
+    """Return the name of the speeds of lines, beside which those of the traced mesh may stand."""
+    names = (f"vizlight {SPEED}", SPEED)
+    return next((name for name in names if name in lines.point_data), None)
+
+
 def _check_mesh(mesh: object, argument: str) -> None:
     """Refuse meshes in which lines cannot be traced."""
     if not isinstance(mesh, pv.DataSet):

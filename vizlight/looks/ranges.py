@@ -178,7 +178,7 @@ def range_shown(
 def _between_tails(values: Array) -> Range:
     """Return the range of values with long tails of many on both sides: that between the tails.
 
-    Of all values, where these take less of the bar than is freed by others.
+    The range is that of all values where the tails would free too little of the bar.
     """
     low, high = float(values.min()), float(values.max())
     first, last = map(float, np.percentile(values, BETWEEN_TAILS))

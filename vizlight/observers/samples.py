@@ -14,7 +14,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight.draw.cameras import VIEW_ANGLE, camera_on
 from vizlight.filters.lighting import part_of
-from vizlight.filters.streamlines import SPEED, TANGENTS, own_name
+from vizlight.filters.streamlines import TANGENTS, speed_of
 from vizlight.mesh import subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import length_rows, unit_rows
@@ -181,10 +181,8 @@ def _speeds(part: SeenMesh) -> Array | None:
     """Return the lengths of the vectors along which streamlines were traced, None without."""
     if part.kind != "line" or part.light.tangents != TANGENTS:
         return None
-    arrays = part.mesh.point_data
-    # A speed of the data that were traced is beside that of the lines.
-    name = own_name(part.mesh, SPEED) if own_name(part.mesh, SPEED) in arrays else SPEED
-    return np.asarray(arrays[name], dtype=np.float64) if name in arrays else None
+    name = speed_of(part.mesh)
+    return None if name is None else np.asarray(part.mesh.point_data[name], dtype=np.float64)
 
 
 def _tangents(part: SeenMesh, ids: Indices, places: Places) -> Array | None:

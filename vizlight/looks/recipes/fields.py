@@ -15,8 +15,7 @@ import pyvista as pv
 
 from vizlight.draw.cameras import footprint
 from vizlight.draw.margins import parted
-from vizlight.filters.streamlines import SPEED as SPEED_OF_LINES
-from vizlight.filters.streamlines import own_name
+from vizlight.filters.streamlines import own_name, speed_of
 from vizlight.looks.levels import sampled_corners
 from vizlight.looks.recipes.drawing import (
     BESIDE,
@@ -425,8 +424,7 @@ def have_sense(strokes: Step) -> bool:
     """Return whether a step lays strokes along vectors, which are not a line field."""
     if "stroke_length" not in strokes.keywords or strokes.keywords.get("line_field"):
         return False
-    arrays = strokes.run().point_data
-    return any(name in arrays for name in (SPEED_OF_LINES, f"vizlight {SPEED_OF_LINES}"))
+    return speed_of(strokes.run()) is not None
 
 
 def _streamlines(case: Case, mesh: Step, scene: Step, keywords: Keywords) -> Step:

@@ -210,7 +210,7 @@ def _with_isolines(case: Case, drawing: Drawing) -> Drawing:
 def surface(case: Case) -> Drawing:
     """Draw a surface in the light of a question about its shape, with the edges of its elements.
 
-    Of a mesh that reaches far around a body its walls are drawn.
+    The walls of a body alone are drawn where the mesh reaches far around it.
     """
     is_solid = case.contents.dimension == 3 and not isinstance(case.data.run(), pv.ImageData)
     inner = Step("walls", "files.walls", case.data)
