@@ -117,7 +117,7 @@ def test_the_judge_can_fail(function, value, words, monkeypatch):
         ("draw.isolines.isolines", "mesh", "mesh:h of 7"),
         ("draw.movie.orbit", "plotter", "other:{}"),
         ("draw.render.save", "plotter", "other:None"),
-        ("files.read", "time", "text:array(['x', 'y'], dt"),
+        ("reading.reader.read", "time", "text:array(['x', 'y'], dt"),
         ("maps.bands", "cmap", "text:''"),
         ("maps.bands", "levels", "array:0-d"),
         ("maps.bands", "logarithmic", "flag:nan"),

@@ -5,7 +5,6 @@ algebra, the oracle, the filter, the page or the command line ignores it.
 """
 
 import dataclasses
-import inspect
 import json
 import re
 import warnings
@@ -18,11 +17,11 @@ import pyvista as pv
 from differential import by_numpy
 
 import vizlight
-from vizlight import DepthCue, Light, Material, Scene, View, cli, files
+from vizlight import DepthCue, Light, Material, Scene, View, cli, writing
 from vizlight.draw import glsl as program
 from vizlight.draw import html
-from vizlight.mesh import brains, foreign_files
 from vizlight.observers.check import reference
+from vizlight.reading import brains, formats, reader
 from vizlight.shading.arrays import Shading
 from vizlight.shading.inputs import ShadingInputs
 from vizlight.shading.options import LightOptions, ShadingOptions
@@ -302,14 +301,14 @@ def test_no_line_is_left_of_a_field_that_is_gone():
 
 
 def test_each_format_has_a_file_that_is_read():
-    """Of what meshio and rasterio read, some formats stand for all; two endings are aliases.
+    """Of what meshio and rasterio read, some formats stand for all; some endings are aliases.
 
     No package of tests writes what cfgrib and h5py read.
     """
-    known = {*files.SUFFIXES, *files.SOUPS, *files.Y_UP, *brains.SURFACES} - {".vrml"}
+    known = {*writing.SUFFIXES, *reader.SOUPS, *reader.Y_UP, *brains.SURFACES} - {".vrml"}
     others = ("meshio", "rasterio", "cfgrib", "h5py")
-    known |= set(re.findall(r'"(\.\w+)"', inspect.getsource(foreign_files.read)))
-    known |= {ending for ending, (by, _) in foreign_files.PACKAGES.items() if by not in others}
+    rows = [row for row in formats.TABLE if row.package not in others]
+    known |= {suffix for row in rows if row.read or row.package for suffix in row.suffixes}
     text = "".join(path.read_text("utf-8") for path in Path(__file__).parent.rglob("*.py"))
     names = set(re.findall(r"\w(\.\w+(?:\.gz)?)\b", text))
-    assert sorted(known - names - {".cdf"}) == []
+    assert sorted(known - names - {".cdf", ".ent", ".sgy", ".vrml"}) == []

@@ -34,6 +34,8 @@ TIERS = [
     {"verify"},
     {"vtk"},
     {"mesh", "data"},
+    {"reading"},
+    {"writing"},
     {"files", "filters"},
     {"draw", "pieces"},
     {"observers"},

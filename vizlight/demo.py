@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pyvista as pv
 
-from vizlight import files
+from vizlight import writing
 from vizlight.data import load_example
 from vizlight.draw import render
 from vizlight.draw.backends import Backend, choose_backend, window_class
@@ -127,7 +127,7 @@ def save_picture(
         wrong = demo.rows[-1][-1].median
         _panel(plotter, f"vizlight: hue is the direction, read to {wrong:.1f}\N{DEGREE SIGN}")
         plotter.camera = demo.camera.copy()  # type: ignore[no-untyped-call]
-        return files.replace_file(path, plotter.screenshot, doing="draw")
+        return writing.replace_file(path, plotter.screenshot, doing="draw")
 
 
 def _panel(plotter: pv.Plotter, text: str) -> None:

@@ -15,7 +15,8 @@ from vizlight.files import FileError
 from vizlight.looks import levels
 from vizlight.looks.recipes.drawing import titled
 from vizlight.looks.rules import RULES
-from vizlight.mesh import meaning, series
+from vizlight.mesh import meaning
+from vizlight.reading import series
 from vizlight.scene.presets import preset_of
 
 SIZE = (120, 80)

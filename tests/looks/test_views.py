@@ -5,7 +5,8 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight.mesh import brains, meaning
+from vizlight.mesh import meaning
+from vizlight.reading import brains
 
 
 def ball(sizes, values):

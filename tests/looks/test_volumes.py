@@ -8,7 +8,8 @@ import vizlight
 from vizlight.draw.margins import parted
 from vizlight.filters.key import annotated
 from vizlight.looks.recipes import volumes
-from vizlight.mesh import brains, density_maps, meaning
+from vizlight.mesh import meaning
+from vizlight.reading import brains, density_maps
 
 
 def volume(noise=0.0, count=24, kind=float):

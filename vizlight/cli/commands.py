@@ -32,7 +32,7 @@ from vizlight.cli.options import (
 )
 from vizlight.cli.output import OK, complain, draw, say
 from vizlight.looks.steps import Step, source
-from vizlight.mesh import other_formats
+from vizlight.reading import other_formats
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -144,7 +144,7 @@ class Command:
 
     def _run(self, look: Look, outputs: Sequence[Sequence[Step]]) -> int:
         """Light, then write, draw and print; return the exit code."""
-        from vizlight import files
+        from vizlight import writing
 
         lit = look.drawing.lit
         needed = any(step is lit for steps in outputs for step in in_order(steps))
@@ -155,7 +155,7 @@ class Command:
             if last.path == "files.write_mesh":
                 mesh, path = last.arguments
                 assert isinstance(mesh, Step)
-                files.check_format(mesh.run(), str(path))
+                writing.check_format(mesh.run(), str(path))
         if self.read:
             say(str(look.figures()))
         codes = [OK]
@@ -217,7 +217,7 @@ def _checks(look: Look) -> list[Step]:
 
 def _check_output(out: Output, *, several: bool) -> None:
     """Check the options of output that need no mesh."""
-    from vizlight import _check, files
+    from vizlight import _check, files, writing
     from vizlight.looks.look import FORMATS, MOVIES
 
     _check.color("background", out.background)
@@ -228,18 +228,18 @@ def _check_output(out: Output, *, several: bool) -> None:
             remedy = "name movies alone, or none" if is_movie else ""
             raise files.FileError(message("output", expected, f"'{path}'", remedy))
         if not path.is_dir():
-            files.check_output(path, FORMATS, name="output")
+            writing.check_output(path, FORMATS, name="output")
     if out.paraview and several:
         raise value_error("paraview", "one file to light", "several")
     if out.paraview:
-        files.check_output(out.paraview, (".py",), name="paraview")
+        writing.check_output(out.paraview, (".py",), name="paraview")
 
 
 def _outputs(look: Look, stem: str, out: Output, inputs: Sequence[Path]) -> list[list[Step]]:
     """Return the steps that write each file; they write over no input."""
     import pyvista as pv
 
-    from vizlight import files
+    from vizlight import writing
 
     paths: list[Path] = []
     # Light at all points of a volume is for a file that is named.
@@ -248,7 +248,7 @@ def _outputs(look: Look, stem: str, out: Output, inputs: Sequence[Path]) -> list
         endings = (suffix, ".png") if suffix else (".png",)
         paths += [path / f"{stem}{end}" for end in endings] if path.is_dir() else [path]
     # A mesh is written before a picture is drawn, which a machine may not be able to do.
-    paths.sort(key=lambda path: path.suffix.lower() not in files.SUFFIXES)
+    paths.sort(key=lambda path: path.suffix.lower() not in writing.SUFFIXES)
     outputs = [steps for path in paths for steps in look.steps(path)]
     if out.paraview:
         outputs.append([Step("", "paraview.save", look.drawing.lit, None, out.paraview)])
@@ -258,7 +258,7 @@ def _outputs(look: Look, stem: str, out: Output, inputs: Sequence[Path]) -> list
         _refuse_input(target, inputs, is_script=last.path == "paraview.save")
         whole = last.path == "files.write_mesh" and last.arguments[0] is look.drawing.lit
         if whole and not look.drawing.parts:
-            files.check_format(pv.PolyData() if kind is None else kind.run(), target)
+            writing.check_format(pv.PolyData() if kind is None else kind.run(), target)
     return outputs
 
 

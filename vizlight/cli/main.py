@@ -100,10 +100,10 @@ def demo(
     """
     from rich.table import Table
 
-    from vizlight import demo, files
+    from vizlight import demo, files, writing
 
     pixels = options.pixels(size)
-    files.make_folder("out", out)
+    writing.make_folder("out", out)
     winds = demo.light_winds()
     mesh = files.write_mesh(winds.globe, out / "flow.vtp")
     table = Table(title="The winds of July, lit by their direction")

@@ -131,7 +131,7 @@ def times(file: Path, part: FilePart) -> list[float | str | None]:
     ValueError
         If the file has none of them.
     """
-    from vizlight.mesh import series
+    from vizlight.reading import series
 
     if part.times is None:
         text = part.time

@@ -11,7 +11,7 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 
-from vizlight import _check, files
+from vizlight import _check, writing
 from vizlight._types import Array, Given, Indices, Keywords, Raw
 from vizlight._version import __version__
 from vizlight.draw.keywords import LIGHT
@@ -93,7 +93,7 @@ def save_gltf(
     colours of a picture of PyVista are decoded from sRGB, to 16 bits. Positions are float32 from
     the centre of the mesh, which is the translation of the node.
     """
-    path = files.check_output(path, (".glb",))
+    path = writing.check_output(path, (".glb",))
     for name in options.keys() - LIGHT:
         raise TypeError(_check.message("options", "an option of vizlight.illuminate", repr(name)))
     if scalars is not None:
@@ -117,7 +117,7 @@ def save_gltf(
         raise _check.value_error("mesh", "a mesh with points", "none")
     said = f"; {' and '.join(sorted(fixed))} as from the scene's view" if fixed else ""
     data = file.content(f"vizlight {__version__}", LEFT_OUT + said)
-    written = files.replace_file(path, lambda draft: Path(draft).write_bytes(data))
+    written = writing.replace_file(path, lambda draft: Path(draft).write_bytes(data))
     if fixed:
         _check.warn(f"{path.name}: {LEFT_OUT}{said}")
     return written

@@ -33,7 +33,6 @@ from vizlight.draw.live import NORMALS, TANGENTS, Fragments, LightAt, Live, item
 from vizlight.draw.margins import MarginBar
 from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_colors
 from vizlight.draw.strokes import DEPTH, line_samples, shares_of
-from vizlight.files import check_output, replace_file
 from vizlight.filters import relight
 from vizlight.filters.key import annotated
 from vizlight.filters.relight import Source
@@ -50,6 +49,7 @@ from vizlight.shading.display import NO_DATA_NAME, numerals
 from vizlight.shading.plan import Plan, decide
 from vizlight.shading.results import DEFAULT_NAME
 from vizlight.vtk.normals import is_scan
+from vizlight.writing import check_output, replace_file
 
 #: Largest number of colours of a scalar bar, and of those that have each a part of it.
 COLORS, CLASSES = 64, 32

@@ -21,7 +21,6 @@ from vizlight._progress import progress
 from vizlight._types import Foreign, Given, Raw
 from vizlight.draw import render
 from vizlight.draw.cameras import Mesh, common_bounds
-from vizlight.files import check_output, replace_file
 from vizlight.filters.project import project
 from vizlight.filters.tint import RGB
 from vizlight.mesh import strokes
@@ -29,6 +28,7 @@ from vizlight.mesh.blocks import all_blocks
 from vizlight.scene import Scene
 from vizlight.scene.presets import AnyScene, optional_scene
 from vizlight.shading.results import DEFAULT_NAME
+from vizlight.writing import check_output, replace_file
 
 Picture = NDArray[np.uint8]
 

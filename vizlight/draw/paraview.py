@@ -14,7 +14,7 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import ArrayLike
 
-from vizlight import _check, files
+from vizlight import _check, files, writing
 from vizlight._types import Exponent, Facing, Given, Model
 from vizlight.draw import dialects, glsl
 from vizlight.draw.glsl import Program
@@ -248,7 +248,7 @@ def save(
     FileError
         If a file cannot be written.
     """
-    path = files.check_output(path, (SUFFIX,))
+    path = writing.check_output(path, (SUFFIX,))
     sources, used = sources_in_scene(mesh, scene, options)
     if len(sources) != 1:
         expected, remedy = "one block", "write a script for each"
@@ -270,7 +270,7 @@ def save(
     result = _made(used, plan, written, TANGENTS, NORMALS, scalars, tallest=live.tallest)
     data = files.write_mesh(live.drawn, beside(path))
     text = result.script(data.resolve())
-    return files.replace_file(path, lambda draft: Path(draft).write_text(text, "utf-8"))
+    return writing.replace_file(path, lambda draft: Path(draft).write_text(text, "utf-8"))
 
 
 def beside(path: Path) -> Path:

@@ -34,7 +34,6 @@ from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on
 from vizlight.draw.scalar_bars import name_no_data
 from vizlight.draw.several_views import several_views
-from vizlight.files import check_output, replace_file
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks, check
@@ -42,6 +41,7 @@ from vizlight.mesh.polylines import backdrop
 from vizlight.shading.display import NO_DATA, displayable
 from vizlight.shading.results import DEFAULT_NAME, VALID
 from vizlight.vtk.polylines import has_lines_only
+from vizlight.writing import check_output, replace_file
 
 __all__ = [
     "Backend", "BackendError", "Panel", "PlotterKeywords", "Probe", "box_axes",

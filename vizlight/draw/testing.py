@@ -20,7 +20,7 @@ from PIL import Image
 
 from vizlight import _check
 from vizlight._types import ColorLike, Foreign
-from vizlight.files import check_output, replace_file
+from vizlight.writing import check_output, replace_file
 
 Pixels: TypeAlias = NDArray[np.uint8]
 Picture: TypeAlias = pv.BasePlotter | str | Path | Pixels

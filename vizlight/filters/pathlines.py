@@ -16,9 +16,10 @@ from vizlight import _check, _progress
 from vizlight._types import Array, Exponent, Facing, Foreign, Model, Precision
 from vizlight.filters.illuminate import light_mesh
 from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
-from vizlight.mesh import cf_grids, georeference, meaning, records
+from vizlight.mesh import georeference, meaning, records
 from vizlight.mesh.particles import Carrier, Rows
-from vizlight.mesh.series import TIME, Series
+from vizlight.reading import cf_grids
+from vizlight.reading.series import TIME, Series
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import AnyScene, as_scene
 from vizlight.shading.options import Bundle, LightOptions

@@ -11,7 +11,8 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.maps import MOST_SPAN
-from vizlight.mesh import blocks, georeference, meaning, molecules, records, stresses
+from vizlight.mesh import blocks, georeference, meaning, records, stresses
+from vizlight.reading import molecules
 from vizlight.vtk.arrays import are_colors
 from vizlight.vtk.cells import dimensions
 

@@ -33,9 +33,10 @@ from vizlight.looks.recipes.drawing import (
 from vizlight.looks.recipes.maps import classes
 from vizlight.looks.steps import Step, in_order
 from vizlight.looks.wishes import Wishes
-from vizlight.mesh import meaning, series
+from vizlight.mesh import meaning
 from vizlight.mesh.particles import Drift
 from vizlight.model import kernels
+from vizlight.reading import series
 
 Picture = NDArray[np.uint8]
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check, files
+from vizlight import _check, files, writing
 from vizlight._questions import QUESTIONS
 from vizlight._words import one_of, type_error, value_error
 from vizlight.draw.margins import parted
@@ -26,7 +26,8 @@ from vizlight.looks.recipes.drawing import Case
 from vizlight.looks.rules import RULES, Rule
 from vizlight.looks.steps import Step, run, source, written
 from vizlight.looks.wishes import even_light, is_whole_earth
-from vizlight.mesh import blocks, cf_grids, georeference, height_grids, meaning, series
+from vizlight.mesh import blocks, georeference, height_grids, meaning
+from vizlight.reading import cf_grids, rasters, series
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ __all__ = ["Look", "look"]
 
 #: Endings of the names of pages, movies and glTF, and of all files that a look writes.
 PAGES, MOVIES, GLTF = (".html", ".htm"), (".mp4", ".gif"), (".glb",)
-FORMATS = (*IMAGES, *VECTORS, *PAGES, *MOVIES, *GLTF, *files.SUFFIXES)
+FORMATS = (*IMAGES, *VECTORS, *PAGES, *MOVIES, *GLTF, *writing.SUFFIXES)
 #: Files that hold all parts of a result.
 TOGETHER = (*PAGES, ".vtm")
 #: Figures of light.
@@ -201,7 +202,7 @@ class Look:
 
     def steps(self, path: str | Path) -> list[list[Step]]:
         """Return the steps that write a file, or one file for each part of the result."""
-        path = files.check_output(path, FORMATS)
+        path = writing.check_output(path, FORMATS)
         suffix, drawing = path.suffix.lower(), self.drawing
         if suffix in (*PAGES, *MOVIES) and views.are_several(self.wishes.view):
             expected = f"one view for '{path}', in which a reader or the eye moves"
@@ -232,7 +233,7 @@ class Look:
             return [[*steps, Step("", way, plotter, path)]]
         if suffix in PAGES:
             return [self._page(path)]
-        if drawing.alone is not None and suffix in files.SUFFIXES and suffix not in TOGETHER:
+        if drawing.alone is not None and suffix in writing.SUFFIXES and suffix not in TOGETHER:
             _check.warn(
                 f"'{path}' has the cells of the highest dimension; a .vtm file has all blocks"
             )
@@ -594,7 +595,7 @@ def _unread(look: Look, names: Sequence[str]) -> str:
 def _is_of_grid(data: object) -> bool:
     """Return whether data have a reader that says which values of an array are missing."""
     if isinstance(data, str | Path):
-        return Path(data).suffix.lower() in (*cf_grids.SUFFIXES, *georeference.SUFFIXES)
+        return Path(data).suffix.lower() in (*cf_grids.SUFFIXES, *rasters.SUFFIXES)
     return cf_grids.is_grid(data)
 
 
@@ -666,7 +667,7 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
     """Return the step that takes a part of the data of a step, its contents, and notes."""
     part, notes, raster = wishes.part, [], False
     if isinstance(data, str | Path):
-        raster = Path(data).suffix.lower() in (*georeference.SUFFIXES, ".dem")
+        raster = Path(data).suffix.lower() in (*rasters.SUFFIXES, ".dem")
         if part.get("time") is None and (note := series.note(step.run())):
             notes.append(note)
     if not _is_of_grid(data):

@@ -22,16 +22,8 @@ from vizlight.looks import cuts, map_parts, views
 from vizlight.looks.contents import Contents
 from vizlight.looks.steps import DISPLACED, Step
 from vizlight.looks.wishes import STYLES, Wishes, direction, scene_step
-from vizlight.mesh import (
-    charts,
-    georeference,
-    globes,
-    height_grids,
-    meaning,
-    nspace,
-    series,
-    stresses,
-)
+from vizlight.mesh import charts, georeference, globes, height_grids, meaning, nspace, stresses
+from vizlight.reading import series
 from vizlight.scene import Scene
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import PRESETS, required_scene

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from vizlight.looks.contents import Contents, Named, Role
 from vizlight.looks.recipes import fields, lines, reliefs, surfaces, volumes
 from vizlight.looks.recipes.drawing import Recipe
-from vizlight.mesh import globes, molecules
+from vizlight.mesh import globes
+from vizlight.reading import molecules
 from vizlight.vtk.cells import dimensions
 
 

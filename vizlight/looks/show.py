@@ -13,11 +13,11 @@ from vizlight._types import Foreign, Given, Keywords
 from vizlight.draw import keywords
 from vizlight.draw.live import LightAt
 from vizlight.draw.render import IMAGES
-from vizlight.files import check_output
 from vizlight.filters.sky import SKY
 from vizlight.looks.look import look
 from vizlight.scene.keywords import named
 from vizlight.scene.presets import AnyScene, optional_scene
+from vizlight.writing import check_output
 
 __all__ = ["plot"]
 

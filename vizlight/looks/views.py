@@ -16,7 +16,8 @@ from vizlight.looks.recipes import lines
 from vizlight.looks.recipes.drawing import FACING, Layer
 from vizlight.looks.steps import Step, in_order
 from vizlight.looks.wishes import BESIDE, CAPTIONS, direction
-from vizlight.mesh import brains, georeference, meaning, molecules
+from vizlight.mesh import georeference, meaning
+from vizlight.reading import brains, molecules
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 import pyvista as pv
 
-from vizlight import _check, _pool, files
+from vizlight import _check, _pool, writing
 from vizlight._types import Foreign, Given, Keywords
 from vizlight.draw import cameras
 from vizlight.filters import lighting
@@ -185,7 +185,7 @@ def light(
     (2, 1684)
     """
     scene = required_scene(scene)
-    path = files.check_output(_check.path("out", out), tuple(INDEX.values()), name="out")
+    path = writing.check_output(_check.path("out", out), tuple(INDEX.values()), name="out")
     ghost = _check.integer("ghost", ghost, low=0)
     _check_options(filter, options, contour, ghost)
     job = task.Job(
@@ -205,7 +205,7 @@ def light(
     folder = path.with_suffix("")
     # The pieces are written here, and moved to their place when all of them are whole.
     drafts = folder / f".vizlight-{uuid.uuid4().hex[:12]}"
-    files.make_folder("out", drafts)
+    writing.make_folder("out", drafts)
     try:
         parts, job = _prepared(parts, job, work)
         targets = [drafts / f"{path.stem}_{i:04d}" for i in range(len(parts))]
@@ -541,7 +541,7 @@ def _write_index(path: Path, pieces: Sequence[PieceSummary], folder: str, scalar
         if piece.extent:
             element.set("Extent", " ".join(map(str, piece.extent)))
     ET.indent(root)
-    return files.replace_file(path, ET.ElementTree(root).write)
+    return writing.replace_file(path, ET.ElementTree(root).write)
 
 
 def _array(parent: ET.Element, name: str, type_: str) -> None:

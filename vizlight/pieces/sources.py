@@ -18,17 +18,18 @@ import pyvista as pv
 from vtkmodules import vtkIOXML
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
-from vizlight import _check, files
+from vizlight import _check, files, writing
 from vizlight._types import Foreign, VectorLike
 from vizlight.mesh.joining import without_ghosts
 from vizlight.pieces.ghosts import GHOST, own_cells, with_layer
+from vizlight.reading import paths, reader
 from vizlight.vtk import messages
 from vizlight.vtk.hull import cropped
 
 Extent = tuple[int, ...]
 
 #: Suffix of a piece by its type of mesh, and suffix of an index of pieces by theirs.
-SUFFIX = {kind: formats[0] for kind, formats in files.FORMATS.items() if kind != "MultiBlock"}
+SUFFIX = {kind: formats[0] for kind, formats in writing.FORMATS.items() if kind != "MultiBlock"}
 INDEX = {suffix: f".p{suffix[1:]}" for suffix in SUFFIX.values()}
 #: Readers of structured grids, which read any box of nodes out of a file.
 STRUCTURED = {
@@ -42,7 +43,7 @@ STRUCTURED = {
 #: Last reader of a structured grid, of each thread.
 _LAST = threading.local()
 #: Files that name the files of their pieces.
-INDICES = (*files.PIECES, ".vtm")
+INDICES = (*reader.PIECES, ".vtm")
 HDF = (".vtkhdf", ".hdf")
 
 
@@ -324,7 +325,7 @@ def _paths(source: str | Path) -> list[Path]:
     """Return the files of a path or a pattern, in the order of their names."""
     text = str(source)
     try:
-        what = files.no_file(Path(text))
+        what = paths.no_file(Path(text))
     except (OSError, ValueError):  # such as a name of more characters than the system takes
         what = "no such file"
     if not what:

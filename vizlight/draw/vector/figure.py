@@ -20,11 +20,11 @@ from vizlight.draw.vector.files import Fill, Item, Picture, Plate, Sheet, pdf_of
 from vizlight.draw.vector.lines import Course, course_of, lines_of, strokes_of
 from vizlight.draw.vector.samples import Samples, enlarged, samples_of
 from vizlight.draw.vector.words import words_of
-from vizlight.files import check_output, replace_file
 from vizlight.geometry.contours.faces import faces
 from vizlight.geometry.contours.levels import levels
 from vizlight.geometry.contours.palette import FEWER, nearest_colors, palette_of
 from vizlight.geometry.contours.steady import steadied
+from vizlight.writing import check_output, replace_file
 
 #: Largest file in bytes that is made where no error is asked for.
 LARGEST = 500_000

@@ -20,7 +20,6 @@ from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on, parted
 from vizlight.draw.render import KEY_SIZE
 from vizlight.draw.ticks import numerals_of
-from vizlight.files import FORMATS
 from vizlight.looks import levels, map_parts
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
@@ -28,8 +27,10 @@ from vizlight.looks.framing import ISOMETRIC, MODELS, Viewpoint, eye_around, eye
 from vizlight.looks.ranges import range_of_scan, range_shown
 from vizlight.looks.steps import DISPLACED, Step
 from vizlight.maps import MISSING
-from vizlight.mesh import brains, dates, georeference, globes, meaning, series
+from vizlight.mesh import dates, georeference, globes, meaning
+from vizlight.reading import brains, series
 from vizlight.shading.results import part_name
+from vizlight.writing import FORMATS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -26,8 +26,9 @@ from vizlight.looks.recipes.drawing import (
 from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
-from vizlight.mesh import meaning, molecules, neurons
+from vizlight.mesh import meaning
 from vizlight.model import kernels
+from vizlight.reading import molecules, neurons
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:

@@ -30,8 +30,9 @@ from vizlight.looks.recipes.drawing import (
 )
 from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import DISPLACED, Step
-from vizlight.mesh import blocks, brains, georeference, meaning
+from vizlight.mesh import blocks, georeference, meaning
 from vizlight.mesh.nspace import POSITION
+from vizlight.reading import brains
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -23,7 +23,8 @@ from vizlight.looks.recipes.drawing import (
     range_of,
 )
 from vizlight.looks.steps import Step
-from vizlight.mesh import density_maps, meaning, molecules, montages
+from vizlight.mesh import meaning, montages
+from vizlight.reading import density_maps, molecules
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:

@@ -1,0 +1,74 @@
+"""Formats that no reader takes are known before any reader is loaded."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pyvista.core.utilities import reader
+
+import vizlight
+from vizlight.files import FileError
+from vizlight.reading import formats, other_formats
+
+
+def test_no_reader_takes_them():
+    ends = {end for group in other_formats.WAYS for end in group}
+    assert ends.isdisjoint(reader.CLASS_READERS)
+    for end in ends:
+        row = formats.of(Path(f"a{end}"))
+        assert not row.read
+        assert not row.package
+
+
+def test_they_are_refused_before_a_reader_is_loaded(tmp_path):
+    path = tmp_path / "walk.xtc"
+    path.write_bytes(b"something")
+    with pytest.raises(ValueError, match=r"no reader takes '.xtc' files; write a state of the mol"):
+        other_formats.check(path)
+    code = (
+        "import sys; from vizlight import cli; code = cli.main([sys.argv[1]]); "
+        "sys.exit(code if 'pyvista' not in sys.modules else 1)"
+    )
+    command = [sys.executable, "-c", code, str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 2, done.stderr
+    assert "as .pdb, .cif or .xyz" in done.stderr
+
+
+def test_grib_of_any_name_and_other_files_are_left_to_readers(tmp_path):
+    for name, data in (("a.txt", b"GRIB 1"), ("b.stl", b"solid"), ("c.gz", b"x")):
+        (tmp_path / name).write_bytes(data)
+        other_formats.check(tmp_path / name)
+    other_formats.check(tmp_path / "absent.xtc")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "format_"),
+    [
+        ("a.mesh", b"MFEM NC mesh v1.0\n\ndimension\n2\n", "a mesh of MFEM"),
+        ("a.asc", b';by a program\n("CellBody"\n  (Color Red)\n', "a neuron of Neurolucida"),
+        ("a.dat", b" BINARY 2.B\n!File started at: 2007\n", "a result of Elmer"),
+        ("a.dat", bytes.fromhex("ec2b0800") + bytes(16), "a restart of SU2"),
+    ],
+)
+def test_formats_with_the_name_of_another_are_named_by_their_content(
+    name, content, format_, tmp_path
+):
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(FileError, match=f"a mesh that PyVista reads, got .*{format_}"):
+        vizlight.read(path)
+    path.write_bytes(b"ncols 3\n")
+    assert not other_formats.of_content(path)
+
+
+def test_a_file_that_is_none_of_tecplot_is_not_damaged(tmp_path):
+    path = tmp_path / "a.dat"
+    path.write_bytes(b"1 2 3\n")
+    with pytest.raises(FileError, match="expected a file of Tecplot, got .*no VARIABLES and ZONE"):
+        vizlight.read(path)
+
+
+def test_features_of_maps_have_a_way_to_a_raster():
+    assert "gdal_rasterize" in other_formats.reason(Path("a.geojson"))

@@ -1,0 +1,50 @@
+"""Files of Wavefront: colours, texture coordinates and normals of some points."""
+
+import pytest
+
+import vizlight
+
+OBJ = b"# 12/31/2020\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n"
+
+
+def test_colors_of_the_points_of_obj(tmp_path):
+    """Also where points are repeated, as each corner has a normal of its own."""
+    colored = OBJ.replace(b"v 0 0 0", b"v 0 0 0 1 0 0").replace(b"v 1 0 0", b"v 1 0 0 0 1 0.5")
+    colored = colored.replace(b"v 0 1 0", b"v 0 1 0 0 0 1")
+    more = b"vn 0 1 0\nf 2/1/2 1/1/2 3/1/2\n"
+    for content, count in ((colored, 3), (colored + more, 6)):
+        (tmp_path / "a.obj").write_bytes(content)
+        mesh = vizlight.read(tmp_path / "a.obj")
+        assert mesh.n_points == count
+        expected = {(0, 0): [255, 0, 0], (1, 0): [0, 255, 128], (0, 1): [0, 0, 255]}
+        for (x, y, _), color in zip(mesh.points.tolist(), mesh["color"].tolist(), strict=True):
+            assert color == expected[x, y]
+
+
+@pytest.mark.filterwarnings("default:.*left out")
+def test_colors_of_some_points_of_obj(tmp_path):
+    (tmp_path / "a.obj").write_bytes(OBJ.replace(b"v 0 0 0", b"v 0 0 0 1 0 0"))
+    with pytest.warns(UserWarning, match="colours of some points alone, which are left out"):
+        assert "color" not in vizlight.read(tmp_path / "a.obj").point_data
+
+
+def test_texture_coordinates_that_are_missing(tmp_path):
+    (tmp_path / "a.obj").write_bytes(OBJ.replace(b"3/1/1", b"3/9/1"))
+    with pytest.warns(UserWarning, match="coordinates are left out: a face has number 9 of 1"):
+        assert vizlight.read(tmp_path / "a.obj").n_cells == 1
+
+
+@pytest.mark.filterwarnings("default:.*left out")
+def test_normals_that_no_face_names(tmp_path):
+    (tmp_path / "a.obj").write_bytes(OBJ.replace(b"/1/1", b"//"))
+    with pytest.warns(UserWarning, match=r"each point are left out: \['Normals'\]"):
+        assert vizlight.read(tmp_path / "a.obj").n_cells == 1
+
+
+def test_straight_curves_of_obj_are_lines_and_others_are_noted(tmp_path):
+    text = "v 0 0 0\nv 1 0 0\nv 0 1 0\ncstype bspline\ndeg 1\ncurv 0 1 1 2\nparm u 0 0 1 1\nend\n"
+    (tmp_path / "a.obj").write_text(text)
+    assert vizlight.read(tmp_path / "a.obj").lines.tolist() == [2, 0, 1]
+    (tmp_path / "a.obj").write_text(text.replace("deg 1", "deg 2"))
+    with pytest.warns(UserWarning, match="free-form curves and surfaces .* are left out"):
+        vizlight.read(tmp_path / "a.obj")
