@@ -1,3 +1,3 @@
 """The version, here alone: packaging, provenance and pages read it."""
 
-__version__ = "0.3.0"
+__version__ = "0.4.0"
