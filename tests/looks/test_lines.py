@@ -36,3 +36,14 @@ def test_of_too_many_dense_lines_the_longest_are_shown_and_all_are_saved(monkeyp
     for few in (tangle(400), pv.PolyData(mesh.points * [40, 40, 0.0], lines=mesh.lines)):
         drawing = vizlight.look(few).drawing
         assert drawing.layers[0].mesh.run().n_cells == few.n_cells
+
+
+def test_borders_on_a_map_have_one_color_and_no_key(tmp_path):
+    corners = np.array([[-180.0, -80], [180, -80], [180, 80], [-180, 80], [-180, -80]])
+    borders = pv.lines_from_points(np.column_stack([corners, 0 * corners[:, 0]]))
+    borders.save(tmp_path / "borders.vtp")
+    drawing = vizlight.look(tmp_path / "borders.vtp").drawing
+    keywords = drawing.layers[0].keywords
+    assert "color" in keywords
+    assert "scalars" not in keywords
+    assert [key["title"] for key in drawing.keys] == ["borders"]

@@ -267,6 +267,8 @@ class Case:
         Array that is shown.
     viewpoint : Viewpoint, optional
         From where it is seen, where a recipe knows a better place than that of any mesh.
+    is_beside : bool, default: False
+        Whether a mesh of a higher dimension is in the picture.
     """
 
     data: Step
@@ -275,6 +277,7 @@ class Case:
     question: str
     array: Named | None = None
     viewpoint: Viewpoint | None = None
+    is_beside: bool = False
 
     @cached_property
     def surface(self) -> Step:

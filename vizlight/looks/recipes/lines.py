@@ -9,6 +9,7 @@ import numpy as np
 import pyvista as pv
 import scipy
 
+from vizlight.draw.margins import ink_on
 from vizlight.draw.ticks import USUAL, even_levels
 from vizlight.filters.tint import RGB
 from vizlight.looks.contents import Contents
@@ -16,6 +17,7 @@ from vizlight.looks.framing import eye_across, eye_on_body
 from vizlight.looks.recipes import surfaces
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
+    ONLY,
     Drawing,
     Layer,
     colors_of_kinds,
@@ -94,7 +96,16 @@ def lines(case: Case) -> Drawing:
     keys: list[Keywords] = [{"scene": scene}]
     words, note = "lines by their heading", ""
     name, array = case.wishes.picture.get("scalars"), case.array
-    if name == DIRECTION or (name is None and case.wishes.question == "auto" and array is None):
+    is_open = name is None and case.wishes.question == "auto" and array is None
+    if is_open and (case.is_beside or case.is_of_earth):
+        # Borders on a map, or edges and paths beside solids, whose direction tells nothing.
+        color = ink_on(pv.Color(case.wishes.background)) if case.is_beside else ONLY
+        layer = Layer(mesh, {"scene": even_light(camera), "color": color, **pen})
+        title = "" if case.is_beside else file_named(mesh)
+        keys = [surfaces.TITLE_ALONE | {"title": title}] if title else []
+        lit = case.lit(mesh, scene, **light)
+        return Drawing([layer], camera, scene, lit, "lines", keys, kind=case.data)
+    if is_open or name == DIRECTION:
         lit = case.lit(mesh, scene, **light)
         is_dense = isinstance(pen.get("halo"), str)
         longest = _longest(mesh) if is_dense else None
