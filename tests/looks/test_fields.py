@@ -289,6 +289,11 @@ def test_the_title_of_a_speed_is_what_the_names_of_components_have_in_common():
     said.add_array("w", {"units": "cm/s", "long_name": "Velocity"})
     meaning.attach(grid, said)
     assert drawing.titled_length(grid, "w") == "speed (cm/s)"
+    grid["vectors"] = np.zeros((4, 3))
+    assert drawing.titled_length(grid, "vectors") == "speed"
+    # Names of components without words of a file tell it themselves.
+    assert drawing.titled_length(grid, "X Velocity,Y Velocity,Z Velocity") == "speed"
+    assert drawing.titled_length(grid, "flux_x,flux_y") == "length of flux"
 
 
 def test_flow_on_a_surface_is_its_evenly_spaced_strokes():

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from vizlight.looks.contents import Contents, Named, Role
+from vizlight.looks.contents import TRACED, Contents, Named, Role
 from vizlight.looks.recipes import fields, lines, reliefs, surfaces, volumes
 from vizlight.looks.recipes.drawing import Recipe
 from vizlight.mesh import globes, molecules
@@ -54,6 +54,10 @@ class Rule:
 
 def _is_lines(contents: Contents) -> bool:
     return contents.dimension == 1
+
+
+def _is_traced(contents: Contents) -> bool:
+    return _is_lines(contents) and TRACED in contents.mesh.array_names
 
 
 def _is_molecule(contents: Contents) -> bool:
@@ -107,7 +111,10 @@ RULES = (
     Rule("backbone", _is_polymer, "value", ("kinds", "values"), lines.backbone,
          "a molecule of long chains"),
     Rule("molecule", _is_molecule, "value", ("kinds", "values"), lines.molecule, "a molecule"),
-    Rule("lines", _is_lines, "value", ("values", "kinds"), lines.lines, "lines with values"),
+    Rule("lines", _is_traced, "value", ("values", "heights", "kinds", "vectors"), lines.lines,
+         "streamlines"),
+    Rule("lines", _is_lines, "value", ("values", "heights", "kinds"), lines.lines,
+         "lines with values"),
     Rule("lines", _is_lines, "heading", (), lines.lines, "lines"),
     Rule("points", _is_points, "none", ("values", "heights", "kinds", "colors"), lines.points,
          "points with values"),

@@ -47,8 +47,8 @@ def wishes_of(wishes: Wishes, contents: Contents) -> Wishes:
 def shared(cases: Sequence[Case]) -> list[Case]:
     """Return the cases with one camera and one range for each array.
 
-    The camera looks as suits the case of the highest dimension, beside which the others stand. Arrays to which a reader gave one
-    name are others where their titles differ.
+    The camera looks as suits the case of the highest dimension, beside which the others stand.
+    Arrays to which a reader gave one name are others where their titles differ.
     """
     first = max(cases, key=lambda case: case.contents.dimension)
     whole = Step("whole", "pyvista.MultiBlock", [case.data for case in cases])

@@ -25,7 +25,7 @@ from vizlight.looks.recipes.drawing import (
     titled_length,
     with_file,
 )
-from vizlight.looks.recipes.fields import pixel_of
+from vizlight.looks.recipes.fields import bar_of_lengths, colors_of_lengths, pixel_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import meaning, molecules, neurons
@@ -127,15 +127,20 @@ def lines(case: Case) -> Drawing:
         return Drawing([layer], camera, scene, lit, words, [key], notes, kind=case.data)
     if case.question == "value":
         array = case.needed_array
-        colors, note = case.ranged_of(mesh, array, case.map_on_ground)
-        if array.role == "kinds":
+        is_vector = array.role == "vectors"
+        if is_vector:
+            colors, note = colors_of_lengths(case, mesh, case.map_on_ground)
+        elif array.role == "kinds":
             colors = colors_of_kinds(mesh, array, case.wishes.colors)
             if not array.of_cells:
                 mesh = Step("halves", "files.surface_of", mesh, labels=array.name)
+        else:
+            colors, note = case.ranged_of(mesh, array, case.map_on_ground)
         scene = case.wishes.scene("none", camera)
         drawn |= {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
-        keys = [case.bar(array, colors) | {"scene": scene}]
-        words = f"lines in the colours of {array.name}"
+        bar = bar_of_lengths(mesh, array.name, colors) if is_vector else case.bar(array, colors)
+        keys = [bar | {"scene": scene}]
+        words = f"lines in the colours of {'the length of ' * is_vector}{array.name}"
     lit = case.lit(case.data, scene, **light)
     notes = [note] if note else []
     layers = [Layer(mesh, drawn), *_somas(case)]
