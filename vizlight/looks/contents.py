@@ -80,7 +80,8 @@ _COLOR_WORDS = {"rgb", "color", "colors", "colour", "colours"}
 #: Words in the names of vectors that are no flow: what moves or loads a solid.
 _LOAD_WORDS = {
     "deformation", "depl", "disp", "displ", "displacement", "displacements", "force", "forces",
-    "load", "loads", "moment", "moments", "reaction", "rotation", "rotations", "traction",
+    "load", "loads", "mode", "modes", "moment", "moments", "reaction", "rotation", "rotations",
+    "traction",
     "xdisp", "xdispl", "xdsp",
 }  # fmt: skip
 #: Most points of a solid whose surface is looked at, and the share of its points on its surface
