@@ -289,6 +289,11 @@ def test_the_title_of_a_speed_is_what_the_names_of_components_have_in_common():
     said.add_array("w", {"units": "cm/s", "long_name": "Velocity"})
     meaning.attach(grid, said)
     assert drawing.titled_length(grid, "w") == "speed (cm/s)"
+    grid["vectors"] = np.zeros((4, 3))
+    assert drawing.titled_length(grid, "vectors") == "speed"
+    # Names of components without words of a file tell it themselves.
+    assert drawing.titled_length(grid, "X Velocity,Y Velocity,Z Velocity") == "speed"
+    assert drawing.titled_length(grid, "flux_x,flux_y") == "length of flux"
 
 
 def test_flow_on_a_surface_is_its_evenly_spaced_strokes():
@@ -341,6 +346,23 @@ def test_strokes_of_a_slab_lie_in_its_middle_and_not_on_its_sides():
     drawn = {layer.mesh.name: layer.mesh.run() for layer in look.drawing.layers}
     for name in ("plane", "strokes"):
         assert drawn[name].bounds[4:] == pytest.approx((1.5, 1.5))
+
+
+@pytest.mark.parametrize("name", ["displacement", "Mode 1"])
+@pytest.mark.parametrize("shape", [pv.Plane, pv.Sphere])
+def test_what_moves_a_surface_is_no_flow_and_has_no_strokes(name, shape):
+    mesh = shape()
+    mesh[name] = mesh.points * [1.0, 2.0, 3.0] + 0.5
+    look = vizlight.look(mesh, size=(240, 160))
+    assert (look.array, look.question) == (name, "value")
+    assert not any("width" in layer.keywords for layer in look.drawing.layers)
+    # Values are shown before it, as on a solid, and it can be asked for.
+    mesh["T"] = mesh.points[:, 0] ** 2
+    assert vizlight.look(mesh, size=(240, 160)).array == "T"
+    again = vizlight.look(mesh, array=name, size=(240, 160))
+    assert (again.array, again.question) == (name, "value")
+    mesh["velocity"] = mesh.point_data.pop(name)
+    assert vizlight.look(mesh, size=(240, 160)).question == "direction"
 
 
 def test_displacements_have_a_linear_bar_and_a_word_for_their_length():

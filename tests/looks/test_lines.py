@@ -36,3 +36,53 @@ def test_of_too_many_dense_lines_the_longest_are_shown_and_all_are_saved(monkeyp
     for few in (tangle(400), pv.PolyData(mesh.points * [40, 40, 0.0], lines=mesh.lines)):
         drawing = vizlight.look(few).drawing
         assert drawing.layers[0].mesh.run().n_cells == few.n_cells
+
+
+def test_borders_on_a_map_have_one_color_and_no_key(tmp_path):
+    corners = np.array([[-180.0, -80], [180, -80], [180, 80], [-180, 80], [-180, -80]])
+    borders = pv.lines_from_points(np.column_stack([corners, 0 * corners[:, 0]]))
+    borders.save(tmp_path / "borders.vtp")
+    drawing = vizlight.look(tmp_path / "borders.vtp").drawing
+    keywords = drawing.layers[0].keywords
+    assert "color" in keywords
+    assert "scalars" not in keywords
+    assert [key["title"] for key in drawing.keys] == ["borders"]
+
+
+def swirl():
+    """Return a field whose speed rises outward from its axis, with a temperature."""
+    grid = pv.ImageData(dimensions=(9, 9, 9), origin=(-4, -4, -4))
+    x, y, z = grid.points.T
+    grid["flow"], grid["T"] = np.column_stack([-y, x, 0 * z + 1]), z**2
+    return grid
+
+
+def test_streamlines_of_pyvista_have_the_colors_of_what_flows_and_none_of_the_tracer():
+    lines_of = swirl().streamlines("flow", source_radius=3, n_points=12)
+    look = vizlight.look(lines_of)
+    (key,) = look.drawing.keys
+    assert (look.array, key["title"]) == ("flow", "speed of flow")
+    speeds = np.linalg.norm(lines_of["flow"], axis=1)
+    assert key["clim"] == pytest.approx((speeds.min(), speeds.max()), rel=0.1)
+    lines_of.set_active_scalars("T")
+    assert vizlight.look(lines_of).array == "T"
+    # By itself the time that a particle takes is a datum.
+    times = lines_of.copy()
+    times.clear_data()
+    times["IntegrationTime"] = lines_of["IntegrationTime"]
+    assert vizlight.look(times).array == "IntegrationTime"
+
+
+def test_glyphs_of_pyvista_have_the_colors_of_their_scale_and_no_strokes():
+    points = swirl().extract_subset((0, 8, 0, 8, 4, 4)).extract_surface(algorithm="geometry")
+    points["speed"] = np.linalg.norm(points["flow"], axis=1)
+    points.set_active_scalars("speed")
+    look = vizlight.look(points.glyph(orient="flow", scale="speed", factor=0.1))
+    assert (look.shown, look.array) == ("surface", "speed")
+
+
+def test_contours_of_heights_have_the_colors_of_their_levels():
+    x, y = np.meshgrid(np.linspace(-3, 3, 30), np.linspace(-3, 3, 30))
+    hill = pv.StructuredGrid(x, y, np.exp(-(x**2) - y**2))
+    hill["Elevation"] = hill.points[:, 2]
+    assert vizlight.look(hill.contour(5, scalars="Elevation")).array == "Elevation"

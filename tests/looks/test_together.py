@@ -23,16 +23,21 @@ def lines():
 def test_each_mesh_is_drawn_by_its_rule_and_all_share_the_camera_and_the_range():
     look = vizlight.look([ball(0), ball(3), lines()], size=SIZE)
     layers = look.drawing.layers
-    assert [layer.keywords.get("scalars") for layer in layers] == ["T", "T", "rgb"]
+    assert [layer.keywords.get("scalars") for layer in layers] == ["T", "T", None]
+    assert pv.Color(layers[2].keywords["color"]) == "black"
     first, second = (layer.keywords["clim"] for layer in layers[:2])
     assert first == second == pytest.approx((-0.5, 3.5), abs=0.02)
-    assert len(look.drawing.keys) == 2
+    assert len(look.drawing.keys) == 1
     assert isinstance(look.mesh, pv.MultiBlock)
     middle = np.asarray(look.view.GetFocalPoint())
     assert middle[0] == pytest.approx(1.5, abs=0.6)
     text = look.script("a.png")
     assert text.count("render.camera_on(") == 1
-    assert text.count("vizlight.presets.heading") == 1
+    dark = vizlight.look([ball(0), lines()], size=SIZE, style="dark")
+    assert pv.Color(dark.drawing.layers[-1].keywords["color"]) == "white"
+    # Beside no surface lines have the colours of their directions.
+    alone = vizlight.look([lines(), lines()], size=SIZE)
+    assert {layer.keywords["scalars"] for layer in alone.drawing.layers} == {"rgb"}
 
 
 def test_files_whose_arrays_a_reader_named_alike_have_their_own_ranges(tmp_path):
@@ -67,6 +72,12 @@ def test_a_closed_surface_around_others_is_see_through():
         ]
         assert seen[-1] < 1 if is_around else min(seen) == 1
         assert ("a surface is see-through: data lie inside it" in look.notes) == is_around
+    # The lids of a cylinder have points of their own, and blocks of one dimension are apart.
+    vessel = pv.Cylinder(radius=1, height=3, direction=(0, 0, 1))
+    seen_through = vizlight.look(pv.MultiBlock({"vessel": vessel, "ball": inside}), size=SIZE)
+    opacities = [layer.keywords.get("opacity") for layer in seen_through.drawing.layers]
+    assert (opacities[0], opacities[1] < 1) == (None, True)
+    assert [key["title"] for key in seen_through.drawing.keys] == ["T"]
     # An open one shows what it holds.
     look = vizlight.look([inside, ball(0).clip("z", origin=(0, 0, 0.4))], size=SIZE)
     assert not any("opacity" in layer.keywords for layer in look.drawing.layers)
@@ -81,6 +92,8 @@ def test_blocks_of_other_dimensions_are_drawn_and_walls_of_a_volume_are_not():
         {"air": volume, "wall": volume.extract_surface(algorithm="dataset_surface")}
     )
     assert [part[0].max_cell_dimensionality for part in blocks.by_dimension(walls)] == [3]
+    walls["wing"] = pv.Plane(center=(4, 0, 0), i_size=5)
+    assert [part.keys() for part in blocks.by_dimension(walls)] == [["air"], ["wing"]]
     # The borders of a plane mesh are no lines of their own.
     plane = pv.Plane()
     inlet = plane.extract_feature_edges(feature_edges=False, manifold_edges=False)
@@ -120,7 +133,7 @@ def test_blocks_of_a_file_are_drawn_each_by_its_rule(tmp_path):
     path = tmp_path / "mixed.vtm"
     pv.MultiBlock({"ball": ball(0), "lines": lines(), "cloud": cloud}).save(path)
     look = vizlight.look(path, size=SIZE)
-    assert [layer.keywords.get("scalars") for layer in look.drawing.layers] == ["T", "rgb", "q"]
+    assert [layer.keywords.get("scalars") for layer in look.drawing.layers] == ["T", None, "q"]
     assert look.mesh.n_blocks == 3
     script = look.script(tmp_path / "a.png")
     assert "parts = files.read_parts(" in script

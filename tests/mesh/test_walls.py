@@ -45,3 +45,12 @@ def test_what_stands_outside_of_a_solid_is_no_wall():
     assert not files.walls(pv.ImageData(dimensions=(4, 4, 4))).n_cells
     with pytest.raises(TypeError, match="volume: expected a mesh of cells"):
         files.walls(3)
+
+
+def test_walls_beside_quadratic_cells():
+    """VTK's numbers of the cells of faces are others where some cells are quadratic."""
+    shell = pv.SolidSphere(inner_radius=1.0, outer_radius=20.0)
+    far = pv.examples.cells.QuadraticTetrahedron().translate((18.0, 0, 0))
+    walls = files.walls(pv.merge([far, shell], merge_points=False))
+    np.testing.assert_allclose(np.linalg.norm(walls.points, axis=1), 1.0, rtol=1e-6)
+    assert walls.n_cells == files.walls(shell).n_cells

@@ -46,6 +46,12 @@ def test_elements_are_those_of_the_columns_or_of_the_names(tmp_path):
     assert mesh["occupancy"].tolist() == [0.5] * 4
 
 
+def test_places_may_lack_the_zero_before_the_point(tmp_path):
+    line = ATOM.format(1, 1, 0.5, 3, -0.25).replace(" 0.500", "  .500").replace("-0.250", " -.250")
+    mesh = vizlight.read(written(tmp_path, line, "a.pdb"))
+    np.testing.assert_array_equal(mesh.points, [[0.5, 3, -0.25]])
+
+
 def test_atoms_of_xyz_are_joined_by_their_distances(tmp_path):
     water = vizlight.read(written(tmp_path, WATER, "water.xyz"))
     assert water["atom_type"].tolist() == [8, 1, 1]

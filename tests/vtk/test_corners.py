@@ -313,3 +313,19 @@ def test_quads_with_dents_and_straight_corners_have_normals_at_all_four():
         for turn in range(4):
             found = corner_normals(points, [np.roll([quad], turn, axis=1)])
             np.testing.assert_allclose(found[quad], np.tile([0.0, 0, 1], (4, 1)), atol=1e-7)
+
+
+def test_faces_that_have_a_point_twice_are_split_at_points_that_are_there():
+    """Also where a face is there again, of hexahedra whose corners coincide."""
+    generator = np.random.default_rng(3)
+    for _ in range(200):
+        points = generator.random((6, 3)) * [1, 1, 0]
+        quads = generator.integers(0, 6, size=(5, 4))
+        quads[0] = quads[4]
+        ends = np.arange(0, 24, 4)
+        twins = np.unique(np.sort(quads), axis=0, return_index=True, return_inverse=True)
+        found, origin, _ = corners.split_faces(
+            points, quads.ravel(), ends, 30, twins[1][twins[2].reshape(-1)]
+        )
+        assert found.max() < len(origin)
+        np.testing.assert_array_equal(origin[found], quads.ravel())

@@ -56,9 +56,12 @@ _NORMALS = {"nx", "ny", "nz"}
 #: Least share of the rows of an array that are one more than the row before, where it counts rows
 #: of tables joined one below the other, and fewest rows.
 COUNTED, FEWEST_COUNTED = 0.9, 10
-#: Names of other tables: the tangents of glTF belong to textures, and PyVista's splines have their
-#: length.
-_TABLES = {"TANGENT", "arc_length", "gmsh:bounding_entities", "gmsh:dim_tags"}
+#: Names of other tables: the tangents of glTF belong to textures, PyVista's splines have their
+#: length, and glyphs are arrows along their vectors.
+_TABLES = {"TANGENT", "arc_length", "gmsh:bounding_entities", "gmsh:dim_tags", "GlyphVector"}
+#: Array by which lines are those that VTK's tracer followed, and others that it makes.
+TRACED = "IntegrationTime"
+_OF_TRACER = {TRACED, "Vorticity", "Rotation", "AngularVelocity"}
 #: Numbers that stand for white in images of 8 and 16 bits.
 WHITE = (2**8 - 1, 2**16 - 1)
 #: Deviation of greys, as a share of white, below which those of a surface in space are no picture.
@@ -78,7 +81,8 @@ _COLOR_WORDS = {"rgb", "color", "colors", "colour", "colours"}
 #: Words in the names of vectors that are no flow: what moves or loads a solid.
 _LOAD_WORDS = {
     "deformation", "depl", "disp", "displ", "displacement", "displacements", "force", "forces",
-    "load", "loads", "moment", "moments", "reaction", "rotation", "rotations", "traction",
+    "load", "loads", "mode", "modes", "moment", "moments", "reaction", "rotation", "rotations",
+    "traction",
     "xdisp", "xdispl", "xdsp",
 }  # fmt: skip
 #: Most points of a solid whose surface is looked at, and the share of its points on its surface
@@ -402,6 +406,7 @@ def _is_secondary(mesh: pv.DataSet, array: Named) -> bool:
     return (
         array.name.startswith("_")
         or array.name.lower() in _OF_PARTS
+        or (array.name in _OF_TRACER and TRACED in mesh.point_data)
         or not _OF_ERRORS.isdisjoint(_words(array.name))
         or (meaning.MEANING in mesh.field_data and _OF_GRID.search(words) is not None)
         or is_direction

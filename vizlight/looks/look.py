@@ -516,8 +516,8 @@ def decide(data: object, wishes: Wishes) -> Look:
     ]
     shared = together.shared([case for _, case in chosen])
     looks = [
-        _decided(rule, replace(case, wishes=mine), notes)
-        for (rule, case), mine, (_, _, notes) in zip(chosen, shared, ready, strict=True)
+        _decided(rule, case, notes)
+        for (rule, _), case, (_, _, notes) in zip(chosen, shared, ready, strict=True)
     ]
     cases = [case for _, case in chosen]
     drawings = [look.drawing for look in looks]

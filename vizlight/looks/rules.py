@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from vizlight.looks.contents import Contents, Named, Role
+from vizlight.looks.contents import TRACED, Contents, Named, Role
 from vizlight.looks.recipes import fields, lines, reliefs, surfaces, volumes
 from vizlight.looks.recipes.drawing import Recipe
 from vizlight.mesh import globes
@@ -57,6 +57,10 @@ def _is_lines(contents: Contents) -> bool:
     return contents.dimension == 1
 
 
+def _is_traced(contents: Contents) -> bool:
+    return _is_lines(contents) and TRACED in contents.mesh.array_names
+
+
 def _is_molecule(contents: Contents) -> bool:
     return lines.is_molecule(contents.mesh)
 
@@ -73,8 +77,20 @@ def _is_flat(contents: Contents) -> bool:
     return contents.flat_axis is not None
 
 
+def _has_flow(contents: Contents) -> bool:
+    return contents.flow is not None
+
+
 def _is_flat_flow(contents: Contents) -> bool:
-    return _is_flat(contents) and not contents.is_strained
+    return _is_flat(contents) and _has_flow(contents)
+
+
+def _is_surface_flow(contents: Contents) -> bool:
+    return _is_surface(contents) and _has_flow(contents)
+
+
+def _is_loaded_surface(contents: Contents) -> bool:
+    return (_is_flat(contents) or _is_surface(contents)) and not _has_flow(contents)
 
 
 def _is_terrain(contents: Contents) -> bool:
@@ -99,8 +115,7 @@ def _is_part(contents: Contents) -> bool:
 
 
 def _is_loaded(contents: Contents) -> bool:
-    has_vectors = contents.first("vectors") is not None
-    return _is_volume(contents) and has_vectors and contents.flow is None
+    return _is_volume(contents) and not _has_flow(contents)
 
 
 #: The table. Of a question that is given, the first row with that question counts.
@@ -108,7 +123,10 @@ RULES = (
     Rule("backbone", _is_polymer, "value", ("kinds", "values"), lines.backbone,
          "a molecule of long chains"),
     Rule("molecule", _is_molecule, "value", ("kinds", "values"), lines.molecule, "a molecule"),
-    Rule("lines", _is_lines, "value", ("values", "kinds"), lines.lines, "lines with values"),
+    Rule("lines", _is_traced, "value", ("values", "heights", "kinds", "vectors"), lines.lines,
+         "streamlines"),
+    Rule("lines", _is_lines, "value", ("values", "heights", "kinds"), lines.lines,
+         "lines with values"),
     Rule("lines", _is_lines, "heading", (), lines.lines, "lines"),
     Rule("points", _is_points, "none", ("values", "heights", "kinds", "colors"), lines.points,
          "points with values"),
@@ -118,13 +136,15 @@ RULES = (
     Rule("sheet", _is_terrain, "relief", ("heights",), reliefs.relief, "a map of heights"),
     Rule("sheet", _is_flat, "none", ("values", "heights", "kinds", "colors"), surfaces.values,
          "a map of values"),
-    Rule("sheet", _is_flat, "none", (), surfaces.plane, "a plane without data"),
-    Rule("surface", _is_surface, "direction", ("vectors",), fields.vectors,
+    Rule("surface", _is_surface_flow, "direction", ("vectors",), fields.vectors,
          "a surface with vectors"),
     Rule("globe", _is_globe, "none", ("values", "heights", "kinds"), surfaces.values,
          "a globe of values"),
     Rule("surface", _is_surface, "value", ("values", "heights", "kinds", "colors"), surfaces.values,
          "a surface with values"),
+    Rule("surface", _is_loaded_surface, "value", ("vectors",), fields.lengths,
+         "a surface under loads"),
+    Rule("sheet", _is_flat, "none", (), surfaces.plane, "a plane without data"),
     Rule("surface", _is_surface, "shape", (), surfaces.surface, "a surface without data"),
     Rule("hull", _is_part, "value", ("values", "heights", "kinds", "colors"), surfaces.values,
          "a solid part with values"),

@@ -44,11 +44,11 @@ def wishes_of(wishes: Wishes, contents: Contents) -> Wishes:
     return replace(wishes, array=array, light=light, picture=picture)
 
 
-def shared(cases: Sequence[Case]) -> list[Wishes]:
-    """Return the wishes of each case, with one camera and one range for each array.
+def shared(cases: Sequence[Case]) -> list[Case]:
+    """Return the cases with one camera and one range for each array.
 
-    The camera looks as suits the case of the highest dimension. Arrays to which a reader gave one
-    name are others where their titles differ.
+    The camera looks as suits the case of the highest dimension, beside which the others stand.
+    Arrays to which a reader gave one name are others where their titles differ.
     """
     first = max(cases, key=lambda case: case.contents.dimension)
     whole = Step("whole", "pyvista.MultiBlock", [case.data for case in cases])
@@ -66,7 +66,9 @@ def shared(cases: Sequence[Case]) -> list[Wishes]:
             picture = {
                 "clim": (min(low for low, _ in every), max(high for _, high in every))
             } | picture
-        of_cases.append(replace(case.wishes, picture=picture, frame=camera))
+        is_beside = case.contents.dimension < first.contents.dimension
+        wishes = replace(case.wishes, picture=picture, frame=camera)
+        of_cases.append(replace(case, wishes=wishes, is_beside=is_beside))
     return of_cases
 
 
@@ -99,9 +101,13 @@ def _is_around(surface: pv.PolyData, mesh: pv.DataSet) -> bool:
     rows = np.asarray(mesh.points)[:: mesh.n_points // SAMPLE + 1]
     low, high = np.reshape(surface.bounds, (3, 2)).T
     rows = rows[np.all((low < rows) & (rows < high), axis=1)]
-    if len(rows) < MOSTLY * min(SAMPLE, mesh.n_points) / 2 or surface.n_open_edges:
+    if len(rows) < MOSTLY * min(SAMPLE, mesh.n_points) / 2:
         return False
-    inside = pv.PolyData(rows).select_interior_points(surface.triangulate())
+    # The lids of a cylinder have points of their own.
+    closed = surface.clean() if surface.n_open_edges else surface
+    if closed.n_open_edges:
+        return False
+    inside = pv.PolyData(rows).select_interior_points(closed.triangulate())
     return bool(np.mean(inside["selected_points"]) > MOSTLY)
 
 

@@ -24,6 +24,8 @@ from vizlight.vtk.topology import place_numbers
 MeshT = TypeVar("MeshT", bound="pv.DataSet | pv.MultiBlock")
 DataSetT = TypeVar("DataSetT", bound=pv.DataSet)
 _NAME = vtkCompositeDataSet.NAME()
+#: Dimension of the cells of a surface.
+SURFACE = 2
 #: Numbers of components of arrays that are neither complex nor tensors.
 _PLAIN = {1, 3}
 
@@ -108,25 +110,47 @@ def _keep_fields(mesh: pv.MultiBlock, grid: pv.UnstructuredGrid) -> None:
 def by_dimension(mesh: pv.MultiBlock) -> list[pv.MultiBlock]:
     """Return the blocks of each dimension of cells, the highest first.
 
-    Surfaces beside volumes are mostly their walls, which would hide them, and are left out; so are
-    lines between the points of a plane mesh, such as those of its inlet.
+    Surfaces without data are apart from others, since they may lie around them. Those at the points
+    of volumes are mostly their walls, which would hide them, and are left out; so are lines between
+    the points of a plane mesh, such as those of its inlet.
     """
-    parts: dict[int, pv.MultiBlock] = {}
+    parts: dict[tuple[int, bool], pv.MultiBlock] = {}
     for block, path in named_blocks(mesh):
         if block.n_points:
             size = int(block.max_cell_dimensionality) if block.n_cells else 0
-            parts.setdefault(size, pv.MultiBlock()).append(block, path.lstrip("/"))
-    if 3 in parts:
-        parts.pop(2, None)
-    elif {*parts} == {1, 2} and min(parts[2].bounds_size) == 0:
-        both = [np.concatenate([np.asarray(one.points) for one in parts[size]]) for size in (2, 1)]
-        numbers = place_numbers(np.concatenate(both))
-        if np.isin(numbers[len(both[0]) :], numbers[: len(both[0])]).all():
-            del parts[1]
+            is_bare = size == SURFACE and not _has_data(block)
+            part = parts.setdefault((-size, is_bare), pv.MultiBlock())
+            part.append(block, path.lstrip("/"))
+    highest = max((-size for size, _ in parts), default=0)
+    whole = pv.MultiBlock([it for key, part in parts.items() if -key[0] == highest for it in part])
+    if highest > SURFACE or (highest == SURFACE and min(whole.bounds_size) == 0):
+        for key in [key for key in parts if -key[0] == highest - 1]:
+            parts[key] = _without_bounds(parts[key], whole)
     for part in parts.values():
         for name in mesh.field_data:  # such as the time of a step
             part.field_data[name] = mesh.field_data[name]
-    return [parts[size] for size in sorted(parts, reverse=True)]
+    return [parts[key] for key in sorted(parts) if parts[key].n_blocks]
+
+
+def _has_data(block: pv.DataSet) -> bool:
+    """Return whether a block has an array that is no normals and no places in a texture."""
+    data = block.point_data
+    of_light = {data.active_normals_name, data.active_texture_coordinates_name}
+    names = {*data, *block.cell_data} - of_light - {block.cell_data.active_normals_name}
+    return any(not name.startswith("vtk") for name in names)
+
+
+def _without_bounds(part: pv.MultiBlock, whole: pv.MultiBlock) -> pv.MultiBlock:
+    """Return the blocks of a part of which less than half of the points are those of another."""
+    every = [np.asarray(block.points, np.float32) for block in [*whole, *part]]
+    numbers = place_numbers(np.concatenate(every))
+    of_blocks = np.split(numbers, np.cumsum([len(points) for points in every])[:-1])
+    inner = np.concatenate(of_blocks[: whole.n_blocks])
+    kept = pv.MultiBlock()
+    for i, ids in enumerate(of_blocks[whole.n_blocks :]):
+        if np.isin(ids, inner).mean() < 1 / 2:
+            kept.append(part[i], part.get_block_name(i))
+    return kept
 
 
 def all_blocks(mesh: object) -> Iterator[pv.DataSet]:

@@ -87,13 +87,16 @@ def _joined(volume: pv.DataSet) -> pv.PolyData:
 
     Points at one place are one.
     """
-    surface = volume.extract_surface(pass_cellid=True, algorithm="dataset_surface")
-    cells = surface.cell_data.get("vtkOriginalCellIds", ())
-    surface.clear_data()
+    cells = volume.copy(deep=False)
+    cells.clear_data()
+    # VTK numbers the cells of an inner step where some are quadratic; arrays go along.
+    cells.cell_data[_OUTWARD] = volume.cell_centers().points
+    surface: pv.PolyData = cells.extract_surface(
+        algorithm="dataset_surface", pass_pointid=False, pass_cellid=False
+    )
     if not surface.n_cells or surface.n_cells > surface.GetNumberOfPolys():
         return pv.PolyData()
-    middles = np.asarray(volume.cell_centers().points)[cells]
-    surface.cell_data[_OUTWARD] = np.asarray(surface.cell_centers().points) - middles
+    surface.cell_data[_OUTWARD] = surface.cell_centers().points - surface.cell_data[_OUTWARD]
     surface = surface.clean(tolerance=ROUNDING * surface.length, absolute=True)
     ids, ends = connectivity(surface.GetPolys())
     # The sum of random numbers of its corners, in any order, stands for a face.

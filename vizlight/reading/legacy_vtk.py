@@ -61,7 +61,7 @@ _LARGEST = {
 _WORDS = 1 << 16
 #: What is no part of a number in text, such as -inf, and a line that does not begin with one.
 _ODD = re.compile(rb"(?i)[^\s\d.+einfaty-]|[ \t](?!nan|inf)[a-z_]")
-_WORD = re.compile(rb"(?mi)^[ \t]*(?!nan|inf)[a-z_%]")
+_WORD = re.compile(rb"(?mi)^[ \t]*(?!(?:nan|inf|infinity)\b)[a-z_%]")
 
 
 def missing_part(file: BinaryIO) -> str:

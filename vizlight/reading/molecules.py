@@ -23,7 +23,7 @@ NO_METALS = [1, 2, *range(5, 11), *range(14, 19), *range(32, 37), *range(52, 55)
 #: and black in models.
 PALE, GREYS = 0.7, {1: 0.9, 6: 0.3}
 #: A coordinate in its columns.
-_PLACE = re.compile(r"\s*[+-]?\d+\.?\d*\s*")
+_PLACE = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)\s*")
 #: Symbol of an atom at the start of a line of an XYZ file.
 _SYMBOL = re.compile(r"[A-Za-z]{1,3}\d*$")
 #: Point arrays of a PDB file: their columns, and what stands for none.

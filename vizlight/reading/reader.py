@@ -180,7 +180,7 @@ def read_parts(
 ) -> list[pv.DataSet]:
     """Read a file of blocks as one mesh for each dimension of their cells, the highest first.
 
-    Surfaces beside volumes are left out: most are walls, which would hide them.
+    Surfaces at the points of volumes are left out: they are walls, which would hide them.
 
     Parameters
     ----------

@@ -306,7 +306,10 @@ def split_faces(
         # points and the point itself tell which corner goes with which.
         corner = np.repeat(twins, np.diff(ends)) * len(points) + ids
         _, first, number = np.unique(corner, return_index=True, return_inverse=True)
-        root = root[first[number.reshape(-1)]]
+        # A face that has a point twice joins what is around both of its corners there.
+        same = root[first[number.reshape(-1)]]
+        low, high = np.minimum(root, same), np.maximum(root, same)
+        root = components(low, high, len(root), kind=root.dtype.type)[root]
     turned = np.zeros(count, dtype=np.bool_)
     if not alike:
         edges = []

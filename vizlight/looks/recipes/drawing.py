@@ -268,6 +268,8 @@ class Case:
         Array that is shown.
     viewpoint : Viewpoint, optional
         From where it is seen, where a recipe knows a better place than that of any mesh.
+    is_beside : bool, default: False
+        Whether a mesh of a higher dimension is in the picture.
     """
 
     data: Step
@@ -276,6 +278,7 @@ class Case:
     question: str
     array: Named | None = None
     viewpoint: Viewpoint | None = None
+    is_beside: bool = False
 
     @cached_property
     def surface(self) -> Step:
@@ -824,8 +827,8 @@ def _days_apart(times: Sequence[float], unit: str) -> Array:
 def _in_common(mesh: pv.DataSet, names: Sequence[str]) -> str:
     """Return the words that the names of the components of a vector have in common."""
     arrays = meaning.of(mesh).arrays
-    every = [arrays.get(name, {}) for name in names]
-    texts = [array.get("standard_name") or array.get("long_name") or "" for array in every]
+    every = [(name, arrays.get(name, {})) for name in names]
+    texts = [array.get("standard_name") or array.get("long_name") or name for name, array in every]
     # The letter of an axis may be a part of a word, as in u-momentum.
     first, *others = (re.split(r"[_ ]+", re.sub(r"\b[u-z]-", "", text)) for text in texts)
     left = " ".join(word for word in first if all(word in words for words in others))
@@ -848,7 +851,7 @@ def titled_length(mesh: pv.DataSet, name: str) -> str:
         return f"displacement{title.removeprefix(name)}" if title.startswith(name) else title
     is_speed = title.lower().endswith("/s)") or VELOCITY.fullmatch(name.lower())
     # The speed of a velocity is a speed.
-    words = re.sub(r"(?i)^of velocity(?= \(|$)", "", f"of {title}").strip()
+    words = re.sub(r"(?i)^of (velocity|vectors?)(?= \(|$)", "", f"of {title}").strip()
     return f"speed {words}".strip() if is_speed else f"length of {title}"
 
 

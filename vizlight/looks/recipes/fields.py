@@ -182,23 +182,29 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     scene = case.wishes.scene("none", camera)
     if bent:
         scene = case.exposed(mesh, camera, "value", **light)
-    finite = _lengths(mesh.run(), array.name)
-    # Displacements are compared with each other, and not in decades.
-    skewed = DISPLACEMENT.fullmatch(array.name.lower()) is None
-    colors, note = case.ranged(finite, f"the length of {array.name}", SPEED, lengths=skewed)
+    colors, note = colors_of_lengths(case, mesh, SPEED)
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
     layers = [Layer(mesh, shown | case.wishes.drawn(light)), *case.edges(camera)]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
     sense = SENSE if case.wishes.part.get("slice") is None else SENSE_IN_CUT
-    bar = _bar(mesh, array.name, colors, "" if strokes is None else sense)
+    bar = bar_of_lengths(mesh, array.name, colors, "" if strokes is None else sense)
     words = f"length of {array.name} in colours" + ", with strokes along it" * (strokes is not None)
     lit = case.lit(mesh, scene, **light)
     notes = [note] if note else []
     return Drawing(layers, camera, scene, lit, words, [bar], notes=notes, kind=mesh)
 
 
-def _bar(mesh: Step, name: str, colors: Keywords, sense: str) -> Keywords:
+def colors_of_lengths(case: Case, mesh: Step, cmap: str) -> tuple[Keywords, str]:
+    """Return the colours of lengths of vectors, and words if their range is not all."""
+    name = case.needed_array.name
+    # Displacements are compared with each other, and not in decades.
+    skewed = DISPLACEMENT.fullmatch(name.lower()) is None
+    sizes = _lengths(mesh.run(), name)
+    return case.ranged(sizes, f"the length of {name}", cmap, lengths=skewed)
+
+
+def bar_of_lengths(mesh: Step, name: str, colors: Keywords, sense: str = "") -> Keywords:
     """Return the keywords of the key of lengths of vectors in colours."""
     title = f"{titled_length(mesh.run(), name)}{sense}"
     return {"question": "value", "title": title, "cmap": colors["cmap"], "clim": colors["clim"]}
@@ -346,7 +352,7 @@ def _colors_of_flow(case: Case, mesh: Step, lines: Step) -> tuple[Keywords, str,
     speed = own_name(mesh.run(), "speed")
     speeds = np.asarray(lines.run()[speed], dtype=np.float64)
     colors, note = case.ranged(speeds, "speed", case.map_on_ground, lengths=True)
-    return {"scalars": speed, **colors}, note, [_bar(mesh, array.name, colors, SENSE)]
+    return {"scalars": speed, **colors}, note, [bar_of_lengths(mesh, array.name, colors, SENSE)]
 
 
 def _where_it_flows(mesh: Step, name: str) -> Step:

@@ -9,6 +9,7 @@ import numpy as np
 import pyvista as pv
 import scipy
 
+from vizlight.draw.margins import ink_on
 from vizlight.draw.ticks import USUAL, even_levels
 from vizlight.filters.tint import RGB
 from vizlight.looks.contents import Contents
@@ -16,6 +17,7 @@ from vizlight.looks.framing import eye_across, eye_on_body
 from vizlight.looks.recipes import surfaces
 from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
+    ONLY,
     Drawing,
     Layer,
     colors_of_kinds,
@@ -23,7 +25,7 @@ from vizlight.looks.recipes.drawing import (
     titled_length,
     with_file,
 )
-from vizlight.looks.recipes.fields import pixel_of
+from vizlight.looks.recipes.fields import bar_of_lengths, colors_of_lengths, pixel_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import meaning
@@ -95,7 +97,16 @@ def lines(case: Case) -> Drawing:
     keys: list[Keywords] = [{"scene": scene}]
     words, note = "lines by their heading", ""
     name, array = case.wishes.picture.get("scalars"), case.array
-    if name == DIRECTION or (name is None and case.wishes.question == "auto" and array is None):
+    is_open = name is None and case.wishes.question == "auto" and array is None
+    if is_open and (case.is_beside or case.is_of_earth):
+        # Borders on a map, or edges and paths beside solids, whose direction tells nothing.
+        color = ink_on(pv.Color(case.wishes.background)) if case.is_beside else ONLY
+        layer = Layer(mesh, {"scene": even_light(camera), "color": color, **pen})
+        title = "" if case.is_beside else file_named(mesh)
+        keys = [surfaces.TITLE_ALONE | {"title": title}] if title else []
+        lit = case.lit(mesh, scene, **light)
+        return Drawing([layer], camera, scene, lit, "lines", keys, kind=case.data)
+    if is_open or name == DIRECTION:
         lit = case.lit(mesh, scene, **light)
         is_dense = isinstance(pen.get("halo"), str)
         longest = _longest(mesh) if is_dense else None
@@ -117,15 +128,20 @@ def lines(case: Case) -> Drawing:
         return Drawing([layer], camera, scene, lit, words, [key], notes, kind=case.data)
     if case.question == "value":
         array = case.needed_array
-        colors, note = case.ranged_of(mesh, array, case.map_on_ground)
-        if array.role == "kinds":
+        is_vector = array.role == "vectors"
+        if is_vector:
+            colors, note = colors_of_lengths(case, mesh, case.map_on_ground)
+        elif array.role == "kinds":
             colors = colors_of_kinds(mesh, array, case.wishes.colors)
             if not array.of_cells:
                 mesh = Step("halves", "files.surface_of", mesh, labels=array.name)
+        else:
+            colors, note = case.ranged_of(mesh, array, case.map_on_ground)
         scene = case.wishes.scene("none", camera)
         drawn |= {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
-        keys = [case.bar(array, colors) | {"scene": scene}]
-        words = f"lines in the colours of {array.name}"
+        bar = bar_of_lengths(mesh, array.name, colors) if is_vector else case.bar(array, colors)
+        keys = [bar | {"scene": scene}]
+        words = f"lines in the colours of {'the length of ' * is_vector}{array.name}"
     lit = case.lit(case.data, scene, **light)
     notes = [note] if note else []
     layers = [Layer(mesh, drawn), *_somas(case)]

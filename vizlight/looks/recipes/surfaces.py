@@ -246,8 +246,9 @@ def _keys(case: Case, scene: Step, title: str) -> list[Keywords]:
 
 
 def _size_of(case: Case) -> str:
-    """Return the sizes of the box of a part along its axes, with their unit if one is known."""
-    if not case.in_room or case.on_globe or brains.hemisphere(case.surface.run()):
+    """Return the sizes of the box of a part that is alone, with their unit if one is known."""
+    is_alone = case.in_room and case.wishes.frame is None
+    if not is_alone or case.on_globe or brains.hemisphere(case.surface.run()):
         return ""
     unit = georeference.unit_of(case.data.run())
     words = meaning.written(unit) if meaning.metres(unit) else ""
