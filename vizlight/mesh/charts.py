@@ -334,7 +334,7 @@ def sheet(mesh: pv.DataSet) -> MapSheet | None:
     if plane is None or not np.ptp(np.reshape(mesh.bounds, (3, 2))[:2], axis=1).all():
         return None
     words = projections.keywords(text)
-    if words.get("proj") == "eqearth" and isinstance(mesh, pv.PolyData):
+    if words.get("proj") == "eqearth":
         outline = _outline_of_earth(mesh, plane, metres, float(words.get("lon_0", 0.0)))
     else:
         outline = _outline(mesh)
@@ -361,15 +361,16 @@ def _outline(mesh: pv.DataSet) -> Array:
     return ring if turns.sum() > 0 else ring[::-1]
 
 
-def _outline_of_earth(mesh: pv.PolyData, plane: Projection, metres: float, lon: float) -> Array:
-    """Return the outline of a surface in Equal Earth about a longitude, of no whole earth its box.
+def _outline_of_earth(mesh: pv.DataSet, plane: Projection, metres: float, lon: float) -> Array:
+    """Return the outline of a map in Equal Earth about a longitude, of no whole earth its own.
 
-    A surface around the earth ends at the meridian opposite to the middle one.
+    A map around the earth ends at the meridian opposite to the middle one, however few its rows.
     """
-    box = _outline(mesh)
-    south, north = plane.inverse(box[1:3] * metres)[:, 1]
+    ends = np.column_stack([np.zeros(2), mesh.bounds[2:4]])
+    south, north = plane.inverse(ends * metres)[:, 1]
     lat = np.linspace(south, north, EDGE_POINTS)
     edge = np.full_like(lat, lon + georeference.AROUND / 2)
     side = plane.forward(np.column_stack([edge, lat])) / metres
     ring = np.concatenate([side, side[::-1] * (-1, 1)])
-    return ring if np.ptp(ring[:, 0]) <= (1 + EDGE) * np.ptp(box[:, 0]) else box
+    is_whole = np.ptp(ring[:, 0]) <= (1 + EDGE) * mesh.bounds_size[0]
+    return ring if is_whole else _outline(mesh)

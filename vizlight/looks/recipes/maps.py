@@ -93,8 +93,8 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     if array is None or array.of_cells or case.contents.dimension != 2:
         return drawing
     table = drawing.layers[0].keywords.get("cmap")
-    has_ground = isinstance(table, Step) and GROUND in table.keywords.values()
-    if has_ground or getattr(table, "log_scale", False):
+    # Bands of all values would take back a range that ends where most of them do.
+    if isinstance(table, Step) or getattr(table, "log_scale", False):
         return drawing
     asked = case.wishes.draws("isolines")
     if flat is None or not (case.map_frame or case.on_globe) or asked is False:
