@@ -1,5 +1,7 @@
 """Looks at lines: which of a dense set are shown."""
 
+import contextlib
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -36,3 +38,15 @@ def test_of_too_many_dense_lines_the_longest_are_shown_and_all_are_saved(monkeyp
     for few in (tangle(400), pv.PolyData(mesh.points * [40, 40, 0.0], lines=mesh.lines)):
         drawing = vizlight.look(few).drawing
         assert drawing.layers[0].mesh.run().n_cells == few.n_cells
+
+
+@pytest.mark.opengl
+def test_points_without_values_have_one_colour_though_an_array_is_active():
+    cloud = pv.PolyData(np.random.default_rng(0).random((50, 3)))
+    cloud["ID"] = np.arange(50) % 25
+    with contextlib.closing(vizlight.look(cloud, size=(150, 100)).plotter()) as plotter:
+        picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)
+    ink = picture[picture.min(axis=2) < 200]
+    assert len(ink) > 50
+    # Blue, lit or not.
+    assert np.all(ink[:, 2] >= ink[:, 0])

@@ -377,6 +377,10 @@ def test_dates_of_wrf_are_texts(tmp_path):
     for source in (data, tmp_path / "a.nc"):
         mesh = vizlight.read(source, time="2005-09-21 03")
         assert dates.date(mesh.field_data["TimeValue"][0], meaning.of(mesh).time).endswith("03:00")
+    # Files of what has no time, as of a ground, have one of zeros.
+    ground = data.isel(Time=[0]).drop_vars("XTIME")
+    ground["Times"] = ("Time", np.array(["0000-00-00_00:00:00"], "S19"))
+    assert vizlight.read(ground)["t"].shape == (20,)
 
 
 def test_dates_of_steps_and_of_an_only_time():

@@ -1465,7 +1465,10 @@ def _with_dates(variable: Foreign) -> Foreign:
     texts = np.char.replace(np.asarray(variable.values, "U"), "_", "T")
     if not texts.size or not all(re.fullmatch(_DATE, text) for text in texts.flat):
         return variable
-    return variable.copy(data=texts.astype("datetime64[ns]"))
+    try:
+        return variable.copy(data=texts.astype("datetime64[ns]"))
+    except ValueError:  # such as month 0, of what has no time
+        return variable
 
 
 def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.StructuredGrid, Bools]:

@@ -23,6 +23,8 @@ STEP = 1e-4
 ROUND = 0.01
 #: Distance beyond the outline of a map that counts as on it, as a share of the map's size.
 EDGE = 1e-3
+#: Room around points, which are drawn as discs, as a share of the longer side of their map.
+AROUND_POINTS = 0.02
 #: Places along each side of a map at which its longitudes and latitudes are looked at.
 SAMPLES = 60
 #: Degrees beyond a map within which a line that ends on it has a place.
@@ -341,9 +343,21 @@ def sheet(mesh: pv.DataSet) -> MapSheet | None:
     return MapSheet(plane, outline, metres)
 
 
+def box_of(mesh: pv.DataSet) -> Array:
+    """Return west, east, south and north of a map, with room around one of points.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    is_points = isinstance(mesh, pv.PolyData) and mesh.n_verts == mesh.n_cells
+    room = AROUND_POINTS * max(mesh.bounds_size[:2]) if is_points else 0.0
+    return np.asarray(mesh.bounds[:4]) + room * np.array([-1, 1, -1, 1])
+
+
 def _outline(mesh: pv.DataSet) -> Array:
     """Return the corners of the outline of a map, counter-clockwise; of no curved grid its box."""
-    west, east, south, north = mesh.bounds[:4]
+    west, east, south, north = box_of(mesh)
     corners = np.array([[west, south], [east, south], [east, north], [west, north]])
     if not isinstance(mesh, pv.StructuredGrid):
         return corners

@@ -55,8 +55,9 @@ def missing_part(path: Path, /) -> str:
 
 #: First bytes of netCDF 3 files that SciPy maps, of others, and of HDF5 files.
 _CLASSIC, _LARGE, _HDF = (b"CDF\x01", b"CDF\x02"), b"CDF\x05", b"\x89HDF\r\n\x1a\n"
-#: Place of the end of the file in the first block of HDF5, by the version of the block.
-_HDF_END = {0: 40, 1: 44, 2: 28, 3: 28}
+#: Places in the first block of HDF5, by its version, of the number of bytes of a place in the file,
+#: and of three places, of which the last is the end of the file.
+_HDF_PLACES = {0: (13, 24), 1: (13, 28), 2: (9, 12), 3: (9, 12)}
 
 
 def _gzip(file: BinaryIO) -> str:
@@ -115,7 +116,8 @@ def _netcdf(file: BinaryIO) -> str:
     head = file.read(64)
     if head.startswith(_HDF):
         # A cut within the header leaves no bytes of this number, which then is 0.
-        end = int.from_bytes(head[_HDF_END[head[8]] :][:8], "little")
+        at, start = _HDF_PLACES[head[8]]
+        end = int.from_bytes(head[start + 2 * head[at] :][: head[at]], "little")
         return (
             (file_parts.missing_bytes(file, end) or _heaps(file))
             if end
