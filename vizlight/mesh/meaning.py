@@ -552,6 +552,10 @@ _METRES = {
 }  # fmt: skip
 
 
+#: Words after a unit of length for where heights begin.
+_ABOVE_SEA = re.compile(r" \(?(msl|a\.?m?\.?s\.?l\.?|above (mean )?sea[ -]level)\)?$")
+
+
 def metres(unit: str) -> float | None:
     """Return the length of a unit in metres, None where it is no length.
 
@@ -560,7 +564,7 @@ def metres(unit: str) -> float | None:
     unit : str
         Name of the unit, in singular or plural.
     """
-    name = unit.strip().lower()
+    name = _ABOVE_SEA.sub("", unit.strip().lower())
     return _METRES.get(name, _METRES.get(name.removesuffix("s")))
 
 

@@ -455,6 +455,16 @@ class Case:
         is_placed = not {"crs", georeference.PROJECTION}.isdisjoint(mesh.field_data.keys())
         return self.on_globe or is_placed or georeference.has_degrees(mesh)
 
+    @property
+    def colors_of_heights(self) -> Keywords:
+        """Colours of a ground, where no others are asked for."""
+        colors, name = self.wishes.colors, self.needed_array.name
+        if "cmap" in colors:
+            return colors
+        ends = colors.get("clim") or range_of(self.data.run(), name)
+        level: Keywords = {"level_sea": True} if self.has_level_sea else {}
+        return {"cmap": Step("", "vizlight.maps.heights", *ends, **level)}
+
     @cached_property
     def has_level_sea(self) -> bool:
         """Whether heights on the earth are 0 at sea, which has no depths."""

@@ -59,11 +59,7 @@ def relief(case: Case) -> Drawing:
     if not keywords["lit"]:
         bent = lit if straight is data else _drawn_as(data, lit)
         return _share(case, bent, camera, scene, f"shadow on {array.name}", "t", notes)
-    colors = case.wishes.colors
-    if "cmap" not in colors:
-        ends = colors.get("clim") or range_of(data.run(), array.name)
-        level: Keywords = {"level_sea": True} if case.has_level_sea else {}
-        colors = {"cmap": Step("", "vizlight.maps.heights", *ends, **level)}
+    colors = case.colors_of_heights
     has_holes = not np.isfinite(data.run()[array.name]).all()
     shown = Step("tinted", "vizlight.tint", lit, array.name, **colors)
     drawn: Keywords = {"show_scalar_bar": False}
