@@ -351,8 +351,8 @@ def _check_before(path: Path, selection: Selection) -> None:
     if content := other_formats.of_content(path):
         raise _wrong("file", "a mesh that PyVista reads", f"'{path}' ({content})")
     short = short_files.missing_part(path)
-    if short == short_files.NO_TECPLOT:
-        raise _wrong("file", "a file of Tecplot", f"'{path}' ({short})")
+    if short in short_files.OTHERS:
+        raise _wrong("file", short_files.OTHERS[short], f"'{path}' ({short})")
     if short:
         raise _damaged(path, short)
     if _trials.are_needed():

@@ -289,7 +289,12 @@ def test_parts_of_dates_and_what_most_points_lack_come_last():
     for name in ("Day", "damage", "elevation", "deaths"):
         cloud[name] = np.random.default_rng(len(name)).permutation(np.arange(20.0))
     cloud["damage"][2:] = np.nan
-    assert [array.name for array in sorted_arrays(cloud)] == ["elevation", "deaths", "Day", "damage"]
+    assert [array.name for array in sorted_arrays(cloud)] == [
+        "elevation",
+        "deaths",
+        "Day",
+        "damage",
+    ]
 
 
 def test_errors_of_other_arrays_come_last():

@@ -84,11 +84,18 @@ def _zip(file: BinaryIO) -> str:
     return f"the check sum of {bad!r} is not that of its data" if bad else ""
 
 
+#: Why HDF5 of another program is no mesh, and a way to one of its arrays.
+NO_VTKHDF = (
+    "it has no group VTKHDF; look at an array of it by xarray: "
+    "vizlight.look(xarray.open_dataset(file, group='...'))"
+)
+
+
 def _vtkhdf(file: BinaryIO) -> str:
     if lacks := _netcdf(file):
         return lacks
     with file_parts.mapped(file) as data:
-        return "" if data.find(b"VTKHDF") >= 0 else "it has no group VTKHDF, which VTK reads"
+        return "" if data.find(b"VTKHDF") >= 0 else NO_VTKHDF
 
 
 #: Largest HDF5 file that is searched for heaps, which takes 0.1 s.
@@ -119,7 +126,7 @@ def _netcdf(file: BinaryIO) -> str:
         at, start = _HDF_PLACES[head[8]]
         end = int.from_bytes(head[start + 2 * head[at] :][: head[at]], "little")
         return (
-            (file_parts.missing_bytes(file, end) or _heaps(file))
+            (file_parts.missing_bytes(file, end) or (_heaps(file) if head[at] == 8 else ""))
             if end
             else "its header is not whole"
         )
@@ -346,6 +353,8 @@ def _data(
 
 #: Reason why a file is none of Tecplot.
 NO_TECPLOT = "no VARIABLES and ZONE are in it"
+#: Files that are whole, but of another format than their name says.
+OTHERS = {NO_TECPLOT: "a file of Tecplot", NO_VTKHDF: "a mesh of VTK in HDF5"}
 #: Corners of a cell of Tecplot by its name.
 _CORNERS = {b"TRIANGLE": 3, b"QUADRILATERAL": 4, b"TETRAHEDRON": 4, b"BRICK": 8}
 

@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight.draw.margins import ink_on
 from vizlight.draw.ticks import even_levels
 from vizlight.looks import map_parts
-from vizlight.looks.recipes.drawing import BANDS, GROUND, Drawing, Layer, lines_every, range_of
+from vizlight.looks.recipes.drawing import BANDS, Drawing, Layer, lines_every, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import charts, georeference, meaning

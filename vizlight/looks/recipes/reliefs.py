@@ -12,7 +12,7 @@ from vizlight.draw.ticks import round_length
 from vizlight.looks import map_parts
 from vizlight.looks.contents import says_heights
 from vizlight.looks.framing import Viewpoint
-from vizlight.looks.recipes.drawing import Drawing, Layer, colors_of, range_of, times_as_high
+from vizlight.looks.recipes.drawing import Drawing, Layer, colors_of, times_as_high
 from vizlight.looks.steps import Step
 from vizlight.mesh import height_grids
 from vizlight.vtk.polylines import has_lines_only
