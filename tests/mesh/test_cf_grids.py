@@ -8,6 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import cartography, files
+from vizlight.looks.recipes.drawing import titled
 from vizlight.mesh import dates, meaning, projections, series
 
 xr = pytest.importorskip("xarray")
@@ -830,3 +831,13 @@ def test_old_grids_of_gmt_are_rows_from_north_to_south(tmp_path, offset):
     (tmp_path / "b.grd").write_bytes(content[:-20])
     with pytest.raises(files.FileError, match="a variable is not whole"):
         vizlight.read(tmp_path / "b.grd")
+
+
+def test_what_changes_with_no_time_has_no_date_in_its_title():
+    ground = {"h": (("y", "x"), np.random.default_rng(0).random((4, 5)))}
+    steps = {"t": (("time", "y", "x"), np.random.default_rng(1).random((2, 4, 5)))}
+    coords = axes_of(time=([0.0, 59.0], {"units": "days since 2001-01-01"}))
+    mesh = vizlight.read(xr.Dataset({**ground, **steps}, coords))
+    assert {"h", "t"} <= {*mesh.point_data}
+    assert titled(mesh, "t") == "t, 2001-03-01"
+    assert titled(mesh, "h") == "h"

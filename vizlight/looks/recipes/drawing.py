@@ -775,7 +775,7 @@ def titled(
         title = f"{title}{sign} {levels.number(value)} {unit}".rstrip()
     if (text := meaning.of(mesh).level) and attributes.get("level") != "none":
         title += f" at {text}"
-    if series.TIME in mesh.field_data:
+    if series.TIME in mesh.field_data and attributes.get("date") != "none":
         many = OF_MANY_YEARS.search(title.lower()) is not None
         date = _dated(mesh, attributes.get("cell_methods", ""), of_many_years=many)
         title += f", {date}" * bool(date)
