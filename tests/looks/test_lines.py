@@ -5,6 +5,7 @@ import contextlib
 import numpy as np
 import pytest
 import pyvista as pv
+from matplotlib import colormaps
 
 import vizlight
 from vizlight.looks.recipes import lines
@@ -50,3 +51,12 @@ def test_points_without_values_have_one_colour_though_an_array_is_active():
     assert len(ink) > 50
     # Blue, lit or not.
     assert np.all(ink[:, 2] >= ink[:, 0])
+
+
+def test_directions_have_colours_that_go_around():
+    cloud = pv.PolyData(np.random.default_rng(0).random((50, 3)))
+    cloud["bearing"] = np.linspace(0.0, 355.0, 50)
+    (key,) = vizlight.look(cloud, size=(150, 100)).drawing.keys
+    assert key["clim"] == (0, 360)
+    first, last = colormaps[key["cmap"]]([0.0, 1.0])
+    np.testing.assert_allclose(first, last)

@@ -100,8 +100,7 @@ _OF_GRID = re.compile(
     r"(^|[^a-z])(mask|mapfac\w*|map (scale )?factor|coriolis|(sin|cos)alpha|cell[ _]area"
     r"|area[ _]of[ _]grid[ _]cell|angle between|angle of (the )?grid|grid_angle\w*|grid angle)"
 )
-#: Directions, by unit and words, and what tells how a vehicle with instruments moves.
-_OF_DIRECTION = re.compile(r"heading|azimuth|direction|orientation|bearing|course")
+#: Words for how a vehicle with instruments moves.
 _OF_PLATFORM = re.compile(r"(^|[^a-z])(platform_|profile_(index|direction)|distance_over_ground)")
 #: Words of names of errors of other arrays, and names of the ends of parts of drill holes.
 _OF_ERRORS = {"error", "errors", "err", "stderr", "uncertainty", "residual", "residuals"}
@@ -407,15 +406,13 @@ def _is_secondary(mesh: pv.DataSet, array: Named) -> bool:
     Directions are such too, since 0 and 360 degrees are one, and heights of stations on a map.
     """
     words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
-    unit = meaning.of(mesh).arrays.get(array.name, {}).get("units", "")
-    is_direction = unit.lower().startswith("deg") and _OF_DIRECTION.search(words) is not None
     is_of_station = array.role == "heights" and mesh.max_cell_dimensionality < 2
     return (
         array.name.startswith("_")
         or array.name.lower() in _OF_PARTS
         or not _OF_ERRORS.isdisjoint(_words(array.name))
         or (meaning.MEANING in mesh.field_data and _OF_GRID.search(words) is not None)
-        or is_direction
+        or meaning.is_direction(mesh, array.name)
         or _OF_PLATFORM.search(words) is not None
         or (is_of_station and georeference.has_degrees(mesh))
     )

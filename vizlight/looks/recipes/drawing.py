@@ -25,9 +25,9 @@ from vizlight.looks import levels, map_parts
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, MODELS, Viewpoint, eye_around, eye_of
-from vizlight.looks.ranges import range_of_scan, range_shown
+from vizlight.looks.ranges import range_of_scan, range_of_turn, range_shown
 from vizlight.looks.steps import DISPLACED, Step
-from vizlight.maps import MISSING
+from vizlight.maps import CYCLIC, MISSING
 from vizlight.mesh import brains, dates, georeference, globes, meaning, series
 from vizlight.shading.results import part_name
 
@@ -590,7 +590,10 @@ class Case:
             return {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors, ""
         kind["decades"] = meaning.is_in_decades(self.data.run(), name)
         shown = range_of_scan(values) if scan else range_shown(values, **kind)
-        if shown.is_signed and is_plain:
+        turn = range_of_turn(values) if meaning.is_direction(self.data.run(), name) else None
+        if turn is not None:
+            shown, cmap = turn, CYCLIC
+        elif shown.is_signed and is_plain:
             shown, cmap = shown.around_zero(values), AROUND_ZERO[cmap]
         elif meaning.is_temperature(self.data.run(), name):
             cmap = OF_HEAT.get(cmap, cmap)
