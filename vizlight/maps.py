@@ -30,6 +30,8 @@ _KINDS = (
     "#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#bbbbbb", "#332288",
     "#88ccee", "#44aa99", "#117733", "#999933", "#ddcc77", "#cc6677", "#882255", "#aa4499",
 )  # fmt: skip
+#: Name of the map of directions, whose ends are alike.
+CYCLIC = "vizlight.cyclic"
 #: Colour of what is missing in pictures without light.
 MISSING = "#d9d9d9"
 #: Largest difference between the numbers of kinds.
@@ -69,10 +71,12 @@ speed = ListedColormap(colormaps["YlGnBu"](0.8 * np.arange(256) / 255), name="vi
 colormaps.register(speed, force=True)
 #: Maps of a look that run in lightness too, as most printed ones, yet not so far that light on them
 #: is taken for another value: violet over green to yellow on surfaces, indigo over crimson to
-#: yellow for temperatures, and the parts of viridis and of these that stand out from a white and
-#: from a dark ground, with large values standing out most, and hot ones red.
+#: yellow for temperatures, around all hues for directions, and the parts of viridis and of these
+#: that stand out from a white and from a dark ground, with large values standing out most, and hot
+#: ones red.
 _VIOLET_TO_YELLOW = ["#5a4fb0", "#3f7fc9", "#35a7b8", "#4fc087", "#a5d24a", "#f2dc3c"]
 _INDIGO_TO_YELLOW = ["#4a45a6", "#7d40a8", "#bb4380", "#e3624d", "#f4993c", "#f9df74"]
+_ALL_AROUND = ["#3b6fb6", "#2fa5a0", "#6db33f", "#e0b030", "#e0603f", "#a34fa3", "#3b6fb6"]
 _surface = LinearSegmentedColormap.from_list("vizlight.surface", _VIOLET_TO_YELLOW)
 _heat = LinearSegmentedColormap.from_list("vizlight.heat", _INDIGO_TO_YELLOW)
 for _map, _name, _on_paper, _on_dark in (
@@ -84,6 +88,7 @@ for _map, _name, _on_paper, _on_dark in (
         colormaps.register(_part, force=True)
 colormaps.register(_surface, force=True)
 colormaps.register(_heat, force=True)
+colormaps.register(LinearSegmentedColormap.from_list(CYCLIC, _ALL_AROUND), force=True)
 
 
 #: Colours of the sea bed from deep to shallow, and of the ground from low to high.

@@ -308,3 +308,15 @@ def test_pressures_by_their_logarithm_have_round_numbers(size, words, monkeypatc
     ]
     found, _ = framed(scales, (0.0, 100.0, -75.0, 0.0), size, monkeypatch)
     assert [word for word in found if "°" not in word] == [*words, "pressure (hPa)"]
+
+
+@pytest.mark.parametrize("projected", [False, True])
+def test_discs_of_points_are_within_the_frame(projected):
+    points = in_degrees(pv.PolyData([(10.0, 50.0, 0.0), (13.0, 52.0, 0.0)]))
+    points = chart(points) if projected else points
+    x, y, _ = (frame(points, letters=points.length / 40).points - points.center).T
+    half, high, _ = np.array(points.bounds_size) / 2
+    # No corner of a part of the frame is in the box, nor beside it where discs reach.
+    wide = 0.015 * 2 * max(half, high)
+    assert not np.any((np.abs(x) < half + wide) & (np.abs(y) < high + wide))
+    np.testing.assert_allclose(charts.box_of(pv.Plane()), pv.Plane().bounds[:4])

@@ -284,6 +284,19 @@ def test_much_the_same_greys_of_a_surface_in_space_are_no_datum(spread, shown):
     assert Contents(ball).arrays[0].name == "RGB"
 
 
+def test_parts_of_dates_and_what_most_points_lack_come_last():
+    cloud = pv.PolyData(np.random.default_rng(0).random((20, 3)))
+    for name in ("Day", "damage", "elevation", "deaths"):
+        cloud[name] = np.random.default_rng(len(name)).permutation(np.arange(20.0))
+    cloud["damage"][2:] = np.nan
+    assert [array.name for array in sorted_arrays(cloud)] == [
+        "elevation",
+        "deaths",
+        "Day",
+        "damage",
+    ]
+
+
 def test_errors_of_other_arrays_come_last():
     ball = pv.Sphere()
     for name in ("NormalizedSignalEstimationError", "EstimatedUncertainty", "RTOP1"):

@@ -8,6 +8,7 @@ from vizlight import look
 from vizlight.looks import framing
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import eye_of
+from vizlight.mesh import georeference
 
 
 def eye(mesh):
@@ -29,6 +30,15 @@ def test_a_strip_lies_along_the_picture():
     viewpoint = eye(strip)
     right = np.cross(viewpoint.up, viewpoint.toward)
     assert abs(right[1]) == pytest.approx(1)
+
+
+def test_a_map_is_turned_by_a_right_angle_if_at_all():
+    """Meridians and parallels are beside it, whatever way its points lie."""
+    for size, up in ((0.2, (0, 1, 0)), (0.01, (1, 0, 0))):
+        track = np.linspace((1, 40, 0), (1 + size, 40.2, 0), 50)
+        track[::2, 0] += size / 50
+        points = georeference.in_metres(georeference.in_degrees(pv.PolyData(track)))
+        assert tuple(eye(points).up) == up
 
 
 def test_what_has_no_side_up_lies_across_with_its_thin_side_in_depth():

@@ -1,8 +1,11 @@
 """Looks at lines: which of a dense set are shown."""
 
+import contextlib
+
 import numpy as np
 import pytest
 import pyvista as pv
+from matplotlib import colormaps
 
 import vizlight
 from vizlight.looks.recipes import lines
@@ -86,3 +89,24 @@ def test_contours_of_heights_have_the_colors_of_their_levels():
     hill = pv.StructuredGrid(x, y, np.exp(-(x**2) - y**2))
     hill["Elevation"] = hill.points[:, 2]
     assert vizlight.look(hill.contour(5, scalars="Elevation")).array == "Elevation"
+
+
+@pytest.mark.opengl
+def test_points_without_values_have_one_colour_though_an_array_is_active():
+    cloud = pv.PolyData(np.random.default_rng(0).random((50, 3)))
+    cloud["ID"] = np.arange(50) % 25
+    with contextlib.closing(vizlight.look(cloud, size=(150, 100)).plotter()) as plotter:
+        picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)
+    ink = picture[picture.min(axis=2) < 200]
+    assert len(ink) > 50
+    # Blue, lit or not.
+    assert np.all(ink[:, 2] >= ink[:, 0])
+
+
+def test_directions_have_colours_that_go_around():
+    cloud = pv.PolyData(np.random.default_rng(0).random((50, 3)))
+    cloud["bearing"] = np.linspace(0.0, 355.0, 50)
+    (key,) = vizlight.look(cloud, size=(150, 100)).drawing.keys
+    assert key["clim"] == (0, 360)
+    first, last = colormaps[key["cmap"]]([0.0, 1.0])
+    np.testing.assert_allclose(first, last)

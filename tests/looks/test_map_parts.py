@@ -148,6 +148,17 @@ def test_a_smooth_map_has_bands_between_its_isolines_and_says_their_step():
     assert nearest.max() < 2 * (high - low) / len(colors)
 
 
+def test_bands_do_not_take_back_a_range_that_leaves_values_out():
+    mesh = chart(60, 40)
+    mesh["warmth"] += 280
+    mesh["warmth"][:42] = 0
+    look = vizlight.look(mesh, size=SIZE)
+    (key,) = look.drawing.keys
+    assert key["clim"][0] > 270
+    assert key["clim"] == look.drawing.layers[0].keywords["clim"]
+    assert "lines every" not in key["title"]
+
+
 @pytest.mark.parametrize(
     ("mesh", "options", "lies"),
     [

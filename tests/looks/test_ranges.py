@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vizlight.looks.ranges import Range, range_shown
+from vizlight.looks.ranges import Range, range_of_turn, range_shown
 
 RANDOM = np.random.default_rng(3)
 
@@ -122,3 +122,12 @@ def test_values_on_both_sides_of_0_have_it_in_their_middle():
     around = range_shown(outside).around_zero(outside)
     assert around.low == -around.high
     assert around.clipped == (True, outside.max() > around.high)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "ends"),
+    [(1, 359, (0, 360)), (-170, 175, (-180, 180)), (0, 100, None), (-90, 300, None)],
+)
+def test_directions_have_a_whole_turn(low, high, ends):
+    turn = range_of_turn(np.array([low, high], dtype=float))
+    assert (turn and turn[:2]) == ends

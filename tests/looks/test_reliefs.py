@@ -66,3 +66,13 @@ def test_a_relief_is_offered_where_values_may_be_heights():
     assert vizlight.look(grid, "relief", size=SIZE).question == "relief"
     grid.rename_array("ground", "cloud")
     assert not vizlight.look(grid, size=SIZE).others
+
+
+def test_heights_of_cells_of_any_shape_have_the_colours_of_a_ground():
+    faces = pv.Plane(i_resolution=6, j_resolution=5).triangulate()
+    faces["elevation"] = np.linspace(-3.0, 9.0, faces.n_points)
+    look = vizlight.look(faces, size=SIZE)
+    table = look.drawing.layers[0].keywords["cmap"]
+    assert table.path == "vizlight.maps.heights"
+    assert table.arguments == look.drawing.keys[0]["clim"] == (-3, 9)
+    assert vizlight.look(faces, cmap="jet", size=SIZE).drawing.keys[0]["cmap"] == "jet"

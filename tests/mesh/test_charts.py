@@ -71,6 +71,13 @@ def test_a_surface_around_the_earth_is_one_map_with_round_sides():
     assert len(charts.sheet(part).outline) == 4
 
 
+def test_a_grid_around_the_earth_of_few_rows_is_one_map_with_round_sides():
+    few, many = (cartography.chart(sheet_of(-180, 180, -90, 90, step)) for step in (30, 1))
+    sheets = [charts.sheet(flat) for flat in (few, many)]
+    np.testing.assert_allclose(sheets[0].outline, sheets[1].outline, atol=1)
+    assert sheets[0].holds(np.asarray(many.points)[:, :2]).all()
+
+
 @pytest.mark.parametrize(("west", "columns"), [(0.0, 72), (0.0, 73), (-180.0, 72), (-180.0, 73)])
 @pytest.mark.parametrize("place", ["points", "cells"])
 def test_the_whole_earth_is_one_map_wherever_its_columns_begin(west, columns, place):

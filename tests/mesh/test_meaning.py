@@ -236,3 +236,9 @@ def test_temperatures_and_properties_of_rock_are_known_by_their_names(name, heat
     meaning.attach(mesh, said)
     assert meaning.is_temperature(mesh, "v") == heat
     assert meaning.is_in_decades(mesh, "v") == decades
+
+
+def test_units_of_heights_above_the_sea_are_lengths():
+    units = {"meters MSL": 1, "m a.s.l.": 1, "km above sea level": 1000, "m (amsl)": 1}
+    assert {unit: meaning.metres(unit) for unit in units} == units
+    assert meaning.metres("m s-1") is None

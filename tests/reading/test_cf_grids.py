@@ -8,6 +8,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import cartography, files
+from vizlight.looks.recipes.drawing import titled
 from vizlight.mesh import dates, meaning, projections
 from vizlight.reading import series
 
@@ -378,6 +379,10 @@ def test_dates_of_wrf_are_texts(tmp_path):
     for source in (data, tmp_path / "a.nc"):
         mesh = vizlight.read(source, time="2005-09-21 03")
         assert dates.date(mesh.field_data["TimeValue"][0], meaning.of(mesh).time).endswith("03:00")
+    # Files of what has no time, as of a ground, have one of zeros.
+    ground = data.isel(Time=[0]).drop_vars("XTIME")
+    ground["Times"] = ("Time", np.array(["0000-00-00_00:00:00"], "S19"))
+    assert vizlight.read(ground)["t"].shape == (20,)
 
 
 def test_dates_of_steps_and_of_an_only_time():
@@ -827,3 +832,13 @@ def test_old_grids_of_gmt_are_rows_from_north_to_south(tmp_path, offset):
     (tmp_path / "b.grd").write_bytes(content[:-20])
     with pytest.raises(files.FileError, match="a variable is not whole"):
         vizlight.read(tmp_path / "b.grd")
+
+
+def test_what_changes_with_no_time_has_no_date_in_its_title():
+    ground = {"h": (("y", "x"), np.random.default_rng(0).random((4, 5)))}
+    steps = {"t": (("time", "y", "x"), np.random.default_rng(1).random((2, 4, 5)))}
+    coords = axes_of(time=([0.0, 59.0], {"units": "days since 2001-01-01"}))
+    mesh = vizlight.read(xr.Dataset({**ground, **steps}, coords))
+    assert {"h", "t"} <= {*mesh.point_data}
+    assert titled(mesh, "t") == "t, 2001-03-01"
+    assert titled(mesh, "h") == "h"

@@ -50,6 +50,9 @@ def test_grib_of_any_name_and_other_files_are_left_to_readers(tmp_path):
         ("a.asc", b';by a program\n("CellBody"\n  (Color Red)\n', "a neuron of Neurolucida"),
         ("a.dat", b" BINARY 2.B\n!File started at: 2007\n", "a result of Elmer"),
         ("a.dat", bytes.fromhex("ec2b0800") + bytes(16), "a restart of SU2"),
+        ("a.hdf", bytes.fromhex("0e031301") + bytes(16), "HDF4, as of MODIS"),
+        ("a.xml", b"<q:quakeml xmlns:q='a'></q:quakeml>", "no mesh of DOLFIN"),
+        ("a.he5", b"", "look at an array of it by xarray"),
     ],
 )
 def test_formats_with_the_name_of_another_are_named_by_their_content(
@@ -59,7 +62,7 @@ def test_formats_with_the_name_of_another_are_named_by_their_content(
     path.write_bytes(content)
     with pytest.raises(FileError, match=f"a mesh that PyVista reads, got .*{format_}"):
         vizlight.read(path)
-    path.write_bytes(b"ncols 3\n")
+    path.write_bytes(b"ncols 3 <dolfin>\n")
     assert not other_formats.of_content(path)
 
 
@@ -68,6 +71,14 @@ def test_a_file_that_is_none_of_tecplot_is_not_damaged(tmp_path):
     path.write_bytes(b"1 2 3\n")
     with pytest.raises(FileError, match="expected a file of Tecplot, got .*no VARIABLES and ZONE"):
         vizlight.read(path)
+
+
+def test_hdf5_of_another_program_is_not_damaged(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.hdf", "w") as file:
+        file["where"] = [1.0]
+    with pytest.raises(FileError, match="expected a mesh of VTK in HDF5, got .*by xarray"):
+        vizlight.read(tmp_path / "a.hdf")
 
 
 def test_features_of_maps_have_a_way_to_a_raster():

@@ -51,6 +51,15 @@ def test_a_sweep_is_a_whole_turn_around_its_radar():
     assert series.of(mesh) == [0.0]
 
 
+def test_reflectivity_is_the_first_of_the_variables():
+    file = volume()
+    others = {name: file["dbz"].assign_attrs(long_name=name) for name in ("NCP", "a", "z")}
+    file = xarray.Dataset({**others, **file.data_vars})
+    assert vizlight.look(file).array == "dbz"
+    renamed = file.rename(dbz="first", z="DBZHC")
+    assert [*vizlight.read(renamed).point_data][:2] == ["DBZHC", "first"]
+
+
 @pytest.mark.parametrize("sweep", [10, 1, "last"])
 def test_a_sweep_is_chosen_by_its_angle_or_its_number(sweep):
     mesh = vizlight.read(volume(), at={"sweep": sweep})

@@ -170,6 +170,17 @@ def test_a_band_of_a_satellite_is_no_relief(tmp_path, name, rows):
     assert (look.question, look.array) == ("none", name)
 
 
+@pytest.mark.parametrize(
+    ("size", "crs", "pixel", "name"),
+    [(1e-3, 32633, 300, "balance"), (1e-3, 4326, 1e-3, "balance"), (1e-3, 32633, 0.5, "elevation"),
+     (1.0, 32633, 300, "elevation")],
+)  # fmt: skip
+def test_a_slight_range_on_a_wide_map_is_none_of_heights(size, crs, pixel, name, tmp_path):
+    place = Affine(pixel, 0, 10, 0, -pixel, 50)
+    mesh = vizlight.read(written(tmp_path / "balance.tif", size * HEIGHTS - 1, place, crs))
+    assert mesh.point_data.keys() == [name]
+
+
 def test_a_band_beside_colours_has_its_own_unit(tmp_path):
     path = written(tmp_path / "a.tif", np.arange(120, dtype=np.uint8).reshape(4, 5, 6))
     with rasterio.open(path, "r+") as file:

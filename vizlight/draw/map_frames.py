@@ -210,7 +210,7 @@ def _bar_unit(mesh: pv.DataSet, sheet: charts.MapSheet | None) -> float:
 def _box(mesh: pv.DataSet, turn: Array) -> Array:
     """Return left, right, bottom and top of a map in the picture."""
     if np.array_equal(turn, np.eye(2)):
-        return np.array(mesh.bounds[:4])
+        return charts.box_of(mesh)
     flat = np.asarray(mesh.points, dtype=np.float64)[:, :2] @ turn.T
     flat = flat[np.isfinite(flat).all(axis=1)]
     return np.stack([flat.min(axis=0), flat.max(axis=0)], axis=1).ravel()

@@ -105,12 +105,13 @@ _OF_GRID = re.compile(
     r"(^|[^a-z])(mask|mapfac\w*|map (scale )?factor|coriolis|(sin|cos)alpha|cell[ _]area"
     r"|area[ _]of[ _]grid[ _]cell|angle between|angle of (the )?grid|grid_angle\w*|grid angle)"
 )
-#: Directions, by unit and words, and what tells how a vehicle with instruments moves.
-_OF_DIRECTION = re.compile(r"heading|azimuth|direction|orientation|bearing|course")
+#: Words for how a vehicle with instruments moves.
 _OF_PLATFORM = re.compile(r"(^|[^a-z])(platform_|profile_(index|direction)|distance_over_ground)")
 #: Words of names of errors of other arrays, and names of the ends of parts of drill holes.
 _OF_ERRORS = {"error", "errors", "err", "stderr", "uncertainty", "residual", "residuals"}
 _OF_PARTS = {"from", "to"}
+#: Names of numbers of dates.
+_OF_DATES = {"year", "month", "day", "hour", "minute", "second"}
 #: Names of heights: of terrain, of the sea bed, of a surface of pressure.
 _HEIGHTS = re.compile(
     r"(^|[^a-z])(elev\w*|dems?|topo\w*|heights?|altitudes?|orog\w*|bathy\w*|relief|hgt|depths?)"
@@ -380,7 +381,7 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
 
     noise = _noise(mesh, [array.name for array in described])
 
-    def rank(array: Named) -> tuple[bool, bool, bool, bool, bool, bool]:
+    def rank(array: Named) -> tuple[bool, ...]:
         # An active array of kinds with names, such as elements, is the best.
         own = array.name in active and bool(meaning.flags(mesh, array.name))
         kinds = array.role == "kinds" and not own
@@ -389,9 +390,19 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         static = (array.name in of_place and not is_height) or _is_secondary(mesh, array)
         is_inactive = array.name not in active
         is_noise = noise.keys() >= {*array.name.split(",")}
-        return (is_noise, kinds, static, is_inactive, array.name in parts, array.of_cells != kinds)
+        of_few = _is_of_few(mesh, array)
+        is_part = array.name in parts
+        return (is_noise, kinds, of_few, static, is_inactive, is_part, array.of_cells != kinds)
 
     return tuple(sorted([*described, *joined], key=rank))
+
+
+def _is_of_few(mesh: pv.DataSet, array: Named) -> bool:
+    """Return whether an array is a part of a date, or missing at most points of a cloud."""
+    is_cloud = mesh.max_cell_dimensionality < 1 and array.name in mesh.point_data
+    rows = np.asarray(mesh.point_data[array.name]) if is_cloud else np.empty(0)
+    is_missing = rows.dtype.kind == "f" and np.isnan(rows).sum() > len(rows) / 2
+    return bool(is_missing) or array.name.lower() in _OF_DATES
 
 
 def _is_secondary(mesh: pv.DataSet, array: Named) -> bool:
@@ -400,8 +411,6 @@ def _is_secondary(mesh: pv.DataSet, array: Named) -> bool:
     Directions are such too, since 0 and 360 degrees are one, and heights of stations on a map.
     """
     words = f"{array.name.lower()} {_words_of(mesh, array.name)}"
-    unit = meaning.of(mesh).arrays.get(array.name, {}).get("units", "")
-    is_direction = unit.lower().startswith("deg") and _OF_DIRECTION.search(words) is not None
     is_of_station = array.role == "heights" and mesh.max_cell_dimensionality < 2
     return (
         array.name.startswith("_")
@@ -409,7 +418,7 @@ def _is_secondary(mesh: pv.DataSet, array: Named) -> bool:
         or (array.name in _OF_TRACER and TRACED in mesh.point_data)
         or not _OF_ERRORS.isdisjoint(_words(array.name))
         or (meaning.MEANING in mesh.field_data and _OF_GRID.search(words) is not None)
-        or is_direction
+        or meaning.is_direction(mesh, array.name)
         or _OF_PLATFORM.search(words) is not None
         or (is_of_station and georeference.has_degrees(mesh))
     )

@@ -165,10 +165,13 @@ def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
     right = np.cross(up, toward)
     points = _finite(mesh.points)
     flat = np.stack([points @ right, points @ np.asarray(up)], axis=1)
-    # Meridians and parallels of a map in degrees are beside it where north is up.
-    if len(flat) > 2 and not (axis == 2 and georeference.has_degrees(mesh)):
-        _, values, axes = np.linalg.svd(flat - flat.mean(axis=0), full_matrices=False)
-        if values[0] > STRIP * values[1] and np.ptp(flat[:, 1]) > np.ptp(flat[:, 0]) / STRIP:
+    if len(flat) > 2:
+        # Meridians and parallels are beside a map: it is turned by a right angle if at all.
+        is_map = axis == 2 and georeference.is_map(mesh)
+        along = flat - flat.mean(axis=0)
+        axes = np.eye(2)[::-1] if is_map else np.linalg.svd(along, full_matrices=False)[2]
+        sides = np.ptp(flat @ axes.T, axis=0)
+        if sides[0] > STRIP * sides[1] and np.ptp(flat[:, 1]) > np.ptp(flat[:, 0]) / STRIP:
             # The long side to the right, and up on the side where up was.
             across = axes[1] * (1.0 if axes[1, 1] >= 0 else -1.0)
             turned = across[0] * right + across[1] * np.asarray(up)

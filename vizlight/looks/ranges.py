@@ -90,6 +90,20 @@ class Range(NamedTuple):
         return words + "; one value below, in a region apart, is grey" * self.apart
 
 
+def range_of_turn(values: Array) -> Range | None:
+    """Return the whole turn in degrees that directions are in, None where they are in no such.
+
+    Parameters
+    ----------
+    values : ndarray
+        Finite values, one at least.
+    """
+    low, high = float(values.min()), float(values.max())
+    first = 0.0 if low >= 0 else -180.0
+    is_turn = first <= low and high - low > 180 and high <= first + 360
+    return Range(first, first + 360) if is_turn else None
+
+
 def range_of_scan(values: Array) -> Range:
     """Return the range of a bar of the values of a scan in grey: its brightest hundredth is white.
 

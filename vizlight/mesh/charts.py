@@ -23,6 +23,8 @@ STEP = 1e-4
 ROUND = 0.01
 #: Distance beyond the outline of a map that counts as on it, as a share of the map's size.
 EDGE = 1e-3
+#: Room around points, which are drawn as discs, as a share of the longer side of their map.
+AROUND_POINTS = 0.02
 #: Places along each side of a map at which its longitudes and latitudes are looked at.
 SAMPLES = 60
 #: Degrees beyond a map within which a line that ends on it has a place.
@@ -334,16 +336,28 @@ def sheet(mesh: pv.DataSet) -> MapSheet | None:
     if plane is None or not np.ptp(np.reshape(mesh.bounds, (3, 2))[:2], axis=1).all():
         return None
     words = projections.keywords(text)
-    if words.get("proj") == "eqearth" and isinstance(mesh, pv.PolyData):
+    if words.get("proj") == "eqearth":
         outline = _outline_of_earth(mesh, plane, metres, float(words.get("lon_0", 0.0)))
     else:
         outline = _outline(mesh)
     return MapSheet(plane, outline, metres)
 
 
+def box_of(mesh: pv.DataSet) -> Array:
+    """Return west, east, south and north of a map, with room around one of points.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    """
+    is_points = isinstance(mesh, pv.PolyData) and mesh.n_verts == mesh.n_cells
+    room = AROUND_POINTS * max(mesh.bounds_size[:2]) if is_points else 0.0
+    return np.asarray(mesh.bounds[:4]) + room * np.array([-1, 1, -1, 1])
+
+
 def _outline(mesh: pv.DataSet) -> Array:
     """Return the corners of the outline of a map, counter-clockwise; of no curved grid its box."""
-    west, east, south, north = mesh.bounds[:4]
+    west, east, south, north = box_of(mesh)
     corners = np.array([[west, south], [east, south], [east, north], [west, north]])
     if not isinstance(mesh, pv.StructuredGrid):
         return corners
@@ -361,15 +375,16 @@ def _outline(mesh: pv.DataSet) -> Array:
     return ring if turns.sum() > 0 else ring[::-1]
 
 
-def _outline_of_earth(mesh: pv.PolyData, plane: Projection, metres: float, lon: float) -> Array:
-    """Return the outline of a surface in Equal Earth about a longitude, of no whole earth its box.
+def _outline_of_earth(mesh: pv.DataSet, plane: Projection, metres: float, lon: float) -> Array:
+    """Return the outline of a map in Equal Earth about a longitude, of no whole earth its own.
 
-    A surface around the earth ends at the meridian opposite to the middle one.
+    A map around the earth ends at the meridian opposite to the middle one, however few its rows.
     """
-    box = _outline(mesh)
-    south, north = plane.inverse(box[1:3] * metres)[:, 1]
+    ends = np.column_stack([np.zeros(2), mesh.bounds[2:4]])
+    south, north = plane.inverse(ends * metres)[:, 1]
     lat = np.linspace(south, north, EDGE_POINTS)
     edge = np.full_like(lat, lon + georeference.AROUND / 2)
     side = plane.forward(np.column_stack([edge, lat])) / metres
     ring = np.concatenate([side, side[::-1] * (-1, 1)])
-    return ring if np.ptp(ring[:, 0]) <= (1 + EDGE) * np.ptp(box[:, 0]) else box
+    is_whole = np.ptp(ring[:, 0]) <= (1 + EDGE) * mesh.bounds_size[0]
+    return ring if is_whole else _outline(mesh)

@@ -55,7 +55,7 @@ def coasts(bounds: pv.DataSet | Sequence[float], /) -> pv.PolyData:
         height = bounds.bounds[5] if bounds.n_points else 0.0
         if (sheet := charts.sheet(bounds)) is not None:
             return _lines(sheet.pieces(_every()), height, georeference.unit_of(bounds))
-        bounds = bounds.bounds[:4]
+        bounds = tuple(map(float, charts.box_of(bounds)))
     west, east, south, north = _sides(bounds)
     corner, size = np.array([west, south]), np.array([east - west, north - south])
     points, first = _segments()

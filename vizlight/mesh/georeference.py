@@ -311,7 +311,12 @@ def _factor(spread: float, side: float) -> float:
 
 
 def _spread(mesh: pv.DataSet, heights: str) -> float:
-    values = np.asarray(mesh.point_data[heights], dtype=np.float64)
+    return range_of(mesh.point_data[heights])
+
+
+def range_of(heights: Raw) -> float:
+    """Return the range of heights, without that of single wrong ones."""
+    values = np.asarray(heights, dtype=np.float64)
     values = values[np.isfinite(values)]
     return float(np.ptp(np.percentile(values, RANGE))) if values.size else 0.0
 

@@ -552,6 +552,10 @@ _METRES = {
 }  # fmt: skip
 
 
+#: Words after a unit of length for where heights begin.
+_ABOVE_SEA = re.compile(r" \(?(msl|a\.?m?\.?s\.?l\.?|above (mean )?sea[ -]level)\)?$")
+
+
 def metres(unit: str) -> float | None:
     """Return the length of a unit in metres, None where it is no length.
 
@@ -560,7 +564,7 @@ def metres(unit: str) -> float | None:
     unit : str
         Name of the unit, in singular or plural.
     """
-    name = unit.strip().lower()
+    name = _ABOVE_SEA.sub("", unit.strip().lower())
     return _METRES.get(name, _METRES.get(name.removesuffix("s")))
 
 
@@ -602,6 +606,8 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
 _CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius", "deg c"}
 #: Names of temperatures, in lower case.
 _TEMPERATURE = re.compile(r"t|theta|(.*[^a-z])?temp(erature)?s?([^a-z].*)?|(.*[^a-z])?(sst|tas)")
+#: Names of directions, in lower case.
+_DIRECTION = re.compile(r".*(heading|azimuth|direction|orientation|bearing|course).*|aspect")
 #: Names of properties of rock that differ by decades, in lower case.
 _IN_DECADES = re.compile(r"perm[_ ]?[xyz\d]*|(.*[^a-z])?(permeab|conductiv|resistiv|transmiss).*")
 #: Symbols of units that are written out, and of their prefixes.
@@ -634,6 +640,19 @@ def is_temperature(mesh: pv.DataSet, name: str) -> bool:
         Name of an array.
     """
     return _is_called(mesh, name, _TEMPERATURE)
+
+
+def is_direction(mesh: pv.DataSet, name: str) -> bool:
+    """Return whether an array is one of directions in degrees, or in no unit that is said.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    name : str
+        Name of an array.
+    """
+    unit = of(mesh).arrays.get(name, {}).get("units", "").lower()
+    return (not unit or unit.startswith("deg")) and _is_called(mesh, name, _DIRECTION)
 
 
 def _is_called(mesh: pv.DataSet, name: str, pattern: re.Pattern[str]) -> bool:

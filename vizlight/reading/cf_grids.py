@@ -441,7 +441,11 @@ class _Reader:
             mesh = self._mesh()
         of_track = self.listed is not None and self.letters[self.listed.dim][0] == "t"
         is_step = (len(ticking) > 1 or self.said.time) and not (of_track or is_drawn)
-        return series.marked(mesh, ticking, step) if is_step else mesh
+        if not is_step:
+            return mesh
+        if len(ticking) > 1:
+            self._say_undated(mesh)
+        return series.marked(mesh, ticking, step)
 
     def _clock_of_section(self, chosen: set[str]) -> tuple[str, str]:
         """Return the axis of time of values that have it and one other, and where it is drawn.
@@ -780,6 +784,14 @@ class _Reader:
         if said.level or said.section or len(levels) != 1 or len(said.axes) != 2:
             return
         said.level = self.said.level = _level(levels[0], 0)
+        meaning.attach(mesh, said)
+
+    def _say_undated(self, mesh: pv.DataSet) -> None:
+        """Say of arrays that they are at no time, beside those that change with it."""
+        said = meaning.of(mesh)
+        for name in {*mesh.array_names} & {*map(str, self.file.data_vars)}:
+            if all(self.letters[str(dim)][0] != "t" for dim in self.file[name].dims):
+                said.arrays.setdefault(name, {})["date"] = "none"
         meaning.attach(mesh, said)
 
     def _say_of_array(self, name: str, variable: Foreign) -> None:
@@ -1452,7 +1464,10 @@ def _with_dates(variable: Foreign) -> Foreign:
     texts = np.char.replace(np.asarray(variable.values, "U"), "_", "T")
     if not texts.size or not all(re.fullmatch(_DATE, text) for text in texts.flat):
         return variable
-    return variable.copy(data=texts.astype("datetime64[ns]"))
+    try:
+        return variable.copy(data=texts.astype("datetime64[ns]"))
+    except ValueError:  # such as month 0, of what has no time
+        return variable
 
 
 def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.StructuredGrid, Bools]:

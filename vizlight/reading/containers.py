@@ -12,8 +12,9 @@ from vizlight.reading import file_parts
 
 #: First bytes of netCDF 3 files that SciPy maps, of others, and of HDF5 files.
 _CLASSIC, _LARGE, _HDF = (b"CDF\x01", b"CDF\x02"), b"CDF\x05", b"\x89HDF\r\n\x1a\n"
-#: Place of the end of the file in the first block of HDF5, by the version of the block.
-_HDF_END = {0: 40, 1: 44, 2: 28, 3: 28}
+#: Places in the first block of HDF5, by its version, of the number of bytes of a place in the file,
+#: and of three places, of which the last is the end of the file.
+_HDF_PLACES = {0: (13, 24), 1: (13, 28), 2: (9, 12), 3: (9, 12)}
 
 
 def missing_of_gzip(file: BinaryIO) -> str:
@@ -40,12 +41,19 @@ def missing_of_zip(file: BinaryIO) -> str:
     return f"the check sum of {bad!r} is not that of its data" if bad else ""
 
 
+#: Why HDF5 of another program is no mesh, and a way to one of its arrays.
+NO_VTKHDF = (
+    "it has no group VTKHDF; look at an array of it by xarray: "
+    "vizlight.look(xarray.open_dataset(file, group='...'))"
+)
+
+
 def missing_of_vtkhdf(file: BinaryIO) -> str:
     """Return the part that a file of VTKHDF lacks, or the group that VTK reads."""
     if lacks := missing_of_netcdf(file):
         return lacks
     with file_parts.mapped(file) as data:
-        return "" if data.find(b"VTKHDF") >= 0 else "it has no group VTKHDF, which VTK reads"
+        return "" if data.find(b"VTKHDF") >= 0 else NO_VTKHDF
 
 
 #: Largest HDF5 file that is searched for heaps, which takes 0.1 s.
@@ -73,9 +81,10 @@ def missing_of_netcdf(file: BinaryIO) -> str:
     head = file.read(64)
     if head.startswith(_HDF):
         # A cut within the header leaves no bytes of this number, which then is 0.
-        end = int.from_bytes(head[_HDF_END[head[8]] :][:8], "little")
+        at, start = _HDF_PLACES[head[8]]
+        end = int.from_bytes(head[start + 2 * head[at] :][: head[at]], "little")
         return (
-            (file_parts.missing_bytes(file, end) or _heaps(file))
+            (file_parts.missing_bytes(file, end) or (_heaps(file) if head[at] == 8 else ""))
             if end
             else "its header is not whole"
         )

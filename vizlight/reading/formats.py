@@ -200,6 +200,8 @@ TABLE = (
     Format((".pvtp",), _of_pieces, vtk_xml.missing_part),
     Format((".vtp", ".vtu", ".pvti", ".pvtr", ".pvts", ".pvtu"), None, vtk_xml.missing_part),
 )  # fmt: skip
+#: Files that are whole, but of another format than their name says.
+OTHERS = {meshers.NO_TECPLOT: "a file of Tecplot", containers.NO_VTKHDF: "a mesh of VTK in HDF5"}
 _BY_SUFFIX = {suffix: row for row in reversed(TABLE) for suffix in row.suffixes}
 
 

@@ -20,6 +20,9 @@ WAYS: dict[tuple[str, ...], str] = {
     (".fits", ".fit", ".fts"):
         "read its array by astropy, and look at an image of it: "
         "mesh = pyvista.ImageData(dimensions=(nx, ny, nz)), mesh['name'] = values.ravel()",
+    (".hdf5", ".he5"):
+        "look at an array of it by xarray: vizlight.look(xarray.open_dataset('{name}', "
+        "group='...'))",
     (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",
     (".step", ".stp", ".iges", ".igs", ".brep"):
         "gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{name}' -o '{stem}.stl'",
@@ -45,6 +48,15 @@ CONTENTS: dict[tuple[str, ...], tuple[tuple[re.Pattern[bytes], str], ...]] = {
         re.compile(rb"\s*(;[^\n]*\s+)*\("),
         "a neuron of Neurolucida; morph-tool makes a .swc of it: "
         "morph-tool convert file '{name}' '{stem}.swc'",
+    ),),
+    (".xml",): ((
+        re.compile(rb"(?s)(?!.*<dolfin)"),
+        "no mesh of DOLFIN, of which files of this name are read; write its numbers as .csv",
+    ),),
+    (".hdf", ".h5", ".nc"): ((
+        re.compile(rb"\x0e\x03\x13\x01"),
+        "HDF4, as of MODIS; GDAL names its grids and makes a raster of one: gdalinfo '{name}', "
+        "gdal_translate NAME_OF_GRID '{stem}.tif'",
     ),),
     (".dat", ".tec"): (
         (re.compile(rb"\s*(ASCII|BINARY) [^\n]*\n!File started"),

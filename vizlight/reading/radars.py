@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -79,7 +80,8 @@ def grid(
     # The rays run fastest, so that a whole turn is closed along its rows.
     mesh = pv.StructuredGrid(x[order], y[order], 0 * x[order])
     words = []
-    for name, values in data.data_vars.items():
+    # Rain is seen by how much it reflects, which files have among signals and shares of noise.
+    for name, values in sorted(data.data_vars.items(), key=_is_no_reflectivity):
         if values.dims == (*data["azimuth"].dims, *data["range"].dims):
             said.add_array(str(name), values.attrs)
             rows, missing = fills.without_missing(str(name), values.values[rays], nodata)
@@ -105,6 +107,13 @@ def _places(ranges: Array, elevation: Array) -> tuple[Array, Array]:
     sine, cosine = np.sin(elevation)[:, np.newaxis], np.cos(elevation)[:, np.newaxis]
     height = np.sqrt(ranges**2 + radius**2 + 2 * ranges * radius * sine) - radius
     return radius * np.arcsin(ranges * cosine / (radius + height)), height
+
+
+def _is_no_reflectivity(variable: tuple[Foreign, Foreign]) -> bool:
+    """Return whether neither the name nor the words of a variable are those of reflectivity."""
+    name, values = variable
+    words = (name, values.attrs.get("standard_name", ""), values.attrs.get("long_name", ""))
+    return re.search(r"\bdbz|reflectivity", " ".join(map(str, words)).lower()) is None
 
 
 def _of_radar(data: Foreign, name: str) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import math
 import re
 import warnings
 from pathlib import Path
@@ -14,7 +15,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._types import Array, Foreign, Raw, Slice
 from vizlight.mesh import blocks, fills, meaning
-from vizlight.mesh.georeference import DEGREE, KILOMETRE, UNIT, seem_degrees
+from vizlight.mesh.georeference import DEGREE, KILOMETRE, METRES, UNIT, range_of, seem_degrees
 from vizlight.reading import (
     composites,
     file_parts,
@@ -27,6 +28,9 @@ SUFFIXES = (
 )  # fmt: skip
 #: Pixels whose values are looked at.
 SAMPLE = 100_000
+#: Range of values, and as a share of the side of their map, below which they are no heights of it:
+#: indices, shares, balances of ice.
+SLIGHT, FLATTEST = 10.0, 1e-3
 #: Highest and deepest ground of the earth in metres, with some to spare.
 HIGHEST, DEEPEST = 9000, 12_000
 #: Names of bands of satellites, of indices of them, and of other quantities that are no heights, in
@@ -51,10 +55,10 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
     A band is a point array of its description, or ``elevation`` where it is the only one, else
     ``band_1``, ``band_2``, ...; red, green and blue are ``rgb`` as bytes, beside their bands where
     these are no picture: by what the file or their names say, else the first of 3 or 4 bands of
-    whole numbers. A single band that can be no
-    heights is named like its file: its unit is no length, it has a few whole numbers, or it is a
-    gray picture, of bytes, or of numbers without a sign and a place. What the file marks as missing
-    is NaN. The field data have its reference system as ``crs``, and its unit.
+    whole numbers. A single band that can be no heights is named like its file: its unit is no
+    length, it has a few whole numbers, or a range of a few units on a map a thousand times wider,
+    or it is a gray picture, of bytes, or of numbers without a sign and a place. What the file marks
+    as missing is NaN. The field data have its reference system as ``crs``, and its unit.
 
     Parameters
     ----------
@@ -239,9 +243,14 @@ def _is_picture(file: Foreign) -> bool:
 
 
 def _has_no_heights(file: Foreign, stem: str, rows: Raw) -> bool:
-    """Return whether a band is no heights by its name, or by counts beyond all heights."""
+    """Return whether a band is no heights by its name, by counts beyond them, or its flatness."""
     counts = file.dtypes[0] == "uint16" and float(np.nanmax(rows, initial=0)) > HIGHEST
-    return counts or _NO_HEIGHTS.search(stem.lower()) is not None
+    if counts or _NO_HEIGHTS.search(stem.lower()) is not None:
+        return True
+    degrees = file.crs is not None and file.crs.is_geographic
+    area = abs(file.transform.determinant) * file.width * file.height
+    side = math.sqrt(area) * (METRES if degrees else 1.0)
+    return 0 < range_of(rows) < min(SLIGHT, FLATTEST * side)
 
 
 def _has_no_place(file: Foreign) -> bool:

@@ -28,7 +28,6 @@ from vizlight.reading import (
     formats,
     gltf,
     legacy_vtk,
-    meshers,
     other_formats,
     rasters,
     references,
@@ -285,8 +284,8 @@ def _check_before(path: Path, selection: Selection) -> None:
     if content := other_formats.of_content(path):
         raise wrong("file", "a mesh that PyVista reads", f"'{path}' ({content})")
     short = formats.missing_part(path)
-    if short == meshers.NO_TECPLOT:
-        raise wrong("file", "a file of Tecplot", f"'{path}' ({short})")
+    if short in formats.OTHERS:
+        raise wrong("file", formats.OTHERS[short], f"'{path}' ({short})")
     if short:
         raise _damaged(path, short)
     if _trials.are_needed():

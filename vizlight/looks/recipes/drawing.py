@@ -24,9 +24,9 @@ from vizlight.looks import levels, map_parts
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, MODELS, Viewpoint, eye_around, eye_of
-from vizlight.looks.ranges import range_of_scan, range_shown
+from vizlight.looks.ranges import range_of_scan, range_of_turn, range_shown
 from vizlight.looks.steps import DISPLACED, Step
-from vizlight.maps import MISSING
+from vizlight.maps import CYCLIC, MISSING
 from vizlight.mesh import dates, georeference, globes, meaning
 from vizlight.reading import brains, series
 from vizlight.shading.results import part_name
@@ -459,6 +459,16 @@ class Case:
         is_placed = not {"crs", georeference.PROJECTION}.isdisjoint(mesh.field_data.keys())
         return self.on_globe or is_placed or georeference.has_degrees(mesh)
 
+    @property
+    def colors_of_heights(self) -> Keywords:
+        """Colours of a ground, where no others are asked for."""
+        colors, name = self.wishes.colors, self.needed_array.name
+        if "cmap" in colors:
+            return colors
+        ends = colors.get("clim") or range_of(self.data.run(), name)
+        level: Keywords = {"level_sea": True} if self.has_level_sea else {}
+        return {"cmap": Step("", "vizlight.maps.heights", *ends, **level)}
+
     @cached_property
     def has_level_sea(self) -> bool:
         """Whether heights on the earth are 0 at sea, which has no depths."""
@@ -584,7 +594,10 @@ class Case:
             return {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors, ""
         kind["decades"] = meaning.is_in_decades(self.data.run(), name)
         shown = range_of_scan(values) if scan else range_shown(values, **kind)
-        if shown.is_signed and is_plain:
+        turn = range_of_turn(values) if meaning.is_direction(self.data.run(), name) else None
+        if turn is not None:
+            shown, cmap = turn, CYCLIC
+        elif shown.is_signed and is_plain:
             shown, cmap = shown.around_zero(values), AROUND_ZERO[cmap]
         elif meaning.is_temperature(self.data.run(), name):
             cmap = OF_HEAT.get(cmap, cmap)
@@ -769,7 +782,7 @@ def titled(
         title = f"{title}{sign} {levels.number(value)} {unit}".rstrip()
     if (text := meaning.of(mesh).level) and attributes.get("level") != "none":
         title += f" at {text}"
-    if series.TIME in mesh.field_data:
+    if series.TIME in mesh.field_data and attributes.get("date") != "none":
         many = OF_MANY_YEARS.search(title.lower()) is not None
         date = _dated(mesh, attributes.get("cell_methods", ""), of_many_years=many)
         title += f", {date}" * bool(date)

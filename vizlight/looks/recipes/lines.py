@@ -423,6 +423,9 @@ def points(case: Case) -> Drawing:
     if array is not None:
         # Light on balls would change the colours by which they are read.
         drawn["lighting"] = False
+    else:
+        # Numbers of points, which may be the active array, are no colours.
+        drawn["color"] = ONLY
     lit = case.lit(mesh, scene)
     notes = [note] if note else []
     return Drawing([Layer(mesh, drawn)], camera, scene, lit, words, keys, notes, kind=mesh)

@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight.draw.margins import ink_on
 from vizlight.draw.ticks import even_levels
 from vizlight.looks import map_parts
-from vizlight.looks.recipes.drawing import BANDS, GROUND, Drawing, Layer, lines_every, range_of
+from vizlight.looks.recipes.drawing import BANDS, Drawing, Layer, lines_every, range_of
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import charts, georeference, meaning
@@ -93,8 +93,8 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     if array is None or array.of_cells or case.contents.dimension != 2:
         return drawing
     table = drawing.layers[0].keywords.get("cmap")
-    has_ground = isinstance(table, Step) and GROUND in table.keywords.values()
-    if has_ground or getattr(table, "log_scale", False):
+    # Bands of all values would take back a range that ends where most of them do.
+    if isinstance(table, Step) or getattr(table, "log_scale", False):
         return drawing
     asked = case.wishes.draws("isolines")
     if flat is None or not (case.map_frame or case.on_globe) or asked is False:

@@ -12,7 +12,7 @@ from vizlight.draw.ticks import round_length
 from vizlight.looks import map_parts
 from vizlight.looks.contents import says_heights
 from vizlight.looks.framing import Viewpoint
-from vizlight.looks.recipes.drawing import Drawing, Layer, colors_of, range_of, times_as_high
+from vizlight.looks.recipes.drawing import Drawing, Layer, colors_of, times_as_high
 from vizlight.looks.steps import Step
 from vizlight.mesh import height_grids
 from vizlight.vtk.polylines import has_lines_only
@@ -59,11 +59,7 @@ def relief(case: Case) -> Drawing:
     if not keywords["lit"]:
         bent = lit if straight is data else _drawn_as(data, lit)
         return _share(case, bent, camera, scene, f"shadow on {array.name}", "t", notes)
-    colors = case.wishes.colors
-    if "cmap" not in colors:
-        ends = colors.get("clim") or range_of(data.run(), array.name)
-        level: Keywords = {"level_sea": True} if case.has_level_sea else {}
-        colors = {"cmap": Step("", "vizlight.maps.heights", *ends, **level)}
+    colors = case.colors_of_heights
     has_holes = not np.isfinite(data.run()[array.name]).all()
     shown = Step("tinted", "vizlight.tint", lit, array.name, **colors)
     drawn: Keywords = {"show_scalar_bar": False}

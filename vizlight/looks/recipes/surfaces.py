@@ -94,6 +94,8 @@ def values(case: Case) -> Drawing:
     if bent and array.role in ("values", "heights"):
         rows = np.asarray(mesh.run()[array.name], dtype=np.float64)
         keywords, note = case.ranged(rows, array.name, ON_SURFACES, lengths=False)
+    elif not bent and array.role == "heights":
+        keywords = case.colors_of_heights
     elif not bent:
         # Nothing is lit: the map may run in lightness, which shows more than hues alone.
         whole = mesh.run()[array.name].dtype.kind in "iu"
