@@ -234,6 +234,7 @@ def make_plotter(
                 text = plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
                 # VTK sets it so near to the edge that letters touch it.
                 text.GetTextProperty().SetLineOffset(8)
+                text.GetTextProperty().SetLineSpacing(1.3)
             # A copy for each panel: the clipping planes fit what it shows, and the caller's camera
             # stays as it was.
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
