@@ -314,6 +314,7 @@ class MarginKey:
         in_pixels.SetCoordinateSystemToViewport()
         mapper.SetInputData(self._mesh)
         mapper.SetTransformCoordinate(in_pixels)
+        mapper.SetTransformCoordinateUseDouble(True)
         mapper.SetScalarModeToUsePointFieldData()
         mapper.ColorByArrayComponent(RGB, 0)
         mapper.SetColorModeToDirectScalars()
