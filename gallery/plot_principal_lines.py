@@ -57,7 +57,7 @@ before = vizlight.illuminate(surface, scene)
 lines = vizlight.streamlines(
     surface, scene, tangents="bend", line_field=True, spacing=0.1, facing="eye"
 )
-blue = Material(ambient=0.3, diffuse=0.7, specular=0, color=(0.10, 0.17, 0.38))
+blue = Material(ambient=0.3, diffuse=0.7, specular=0, color=(0.16, 0.26, 0.52))
 after = pv.MultiBlock([vizlight.illuminate(surface, scene.replace(material=blue)), lines])
 
 panels = [
