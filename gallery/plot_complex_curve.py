@@ -58,18 +58,20 @@ def turned(degrees):
 
 panels = [render.Panel(turned(angle), "rgb", f"turned by {angle}°") for angle in (0, 20, 45, 70, 90)]
 meshes = pv.MultiBlock([block for panel in panels for block in panel.mesh])
-camera = render.camera_on(meshes, (0.5, -1, 0.7), aspect=0.9, zoom=1.0)
+camera = render.camera_on(meshes, (0.5, -1, 0.7), aspect=0.9, zoom=0.86)
 # A key of the phase, which faces the eye.
 axis = -np.array(camera.direction)
 ring = pv.Disc(inner=0.6, outer=1.1, normal=axis, r_res=8, c_res=180)
-right, up = np.cross(camera.up, axis), np.array(camera.up)
+right = np.cross(camera.up, axis) / np.linalg.norm(np.cross(camera.up, axis))
+up = np.cross(axis, right)
 phase = np.arctan2(ring.points @ up, ring.points @ right)
 ring["rgb"] = wheel(phase / (2 * np.pi) + 0.5)[:, :3]
 panels.append(render.Panel(ring, "rgb", "phase of w"))
 look = {"rows": 2, "size": (1650, 1240), "background": "white", "line_width": 1.5}
 plotter = render.make_plotter(panels, camera=camera, **look)
-places = [1.35 * (np.cos(turn) * right + np.sin(turn) * up) for turn in np.arange(4) * np.pi / 2]
-words = {"shape": None, "show_points": False, "font_size": 22, "text_color": "black"}
+places = [1.5 * (np.cos(turn) * right + np.sin(turn) * up) for turn in np.arange(4) * np.pi / 2]
+words = {"shape": None, "show_points": False, "font_size": 26, "bold": False, "always_visible": True}
+words["text_color"] = "black"
 words |= {"justification_horizontal": "center", "justification_vertical": "center"}
-plotter.add_point_labels(np.array(places), ["0", "π/2", "π", "-π/2"], **words)
+plotter.add_point_labels(np.array(places), ["0", r"$\pi/2$", r"$\pi$", r"$-\pi/2$"], **words)
 plotter.show()

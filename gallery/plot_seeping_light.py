@@ -43,13 +43,16 @@ plotter.show()
 # grows, at first the ratio faster, later the exponential. The source on cos-theta shadows calls
 # them qualitatively alike.
 
-r = np.geomspace(0.002, 1, 200)
+r = np.linspace(0.01, 10, 400)  # in depths d
 figure, axes = plt.subplots(figsize=(8, 5), layout="constrained")
-for depth, color in ((0.006, "#1f6f9f"), (0.01, "#c8641e")):
-    axes.semilogx(r, np.minimum(depth / r, 1), color=color, lw=2.5, label=f"d / r, d = {depth}")
-    scattered = np.exp(-np.log(2) * r / (2 * depth))
-    axes.semilogx(r, scattered, "--", color=color, lw=2, label=f"exp(-a r), a = ln 2 / {2 * depth}")
-axes.set(xlabel="way r through a dog of length 1.2", ylabel="share of light that passes")
+text = {"fontsize": 15, "va": "bottom"}
+axes.plot(r, np.minimum(1 / r, 1), color="#c8641e", lw=3)
+axes.text(1.35, 0.8, "$t = d / r$", color="#c8641e", **text)
+axes.plot(r, np.exp(-np.log(2) * r / 2), "--", color="#1f6f9f", lw=3)
+axes.text(4.0, 0.26, "$e^{-a r}$, $a = \\ln 2 / (2 d)$", color="#1f6f9f", **text)
+axes.set_xlabel("way through the solid over the depth, $r / d$", fontsize=13)
+axes.set_ylabel("share of light that passes", fontsize=13)
+axes.tick_params(labelsize=12)
+axes.set(xlim=(0, 10), ylim=(0, 1.05))
 axes.spines[["top", "right"]].set_visible(False)
-axes.legend(frameon=False)
 plt.show()
