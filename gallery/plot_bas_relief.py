@@ -18,13 +18,13 @@ from vizlight import Light, Material, Scene, render
 
 dog = vizlight.load_example("dog.vtp")
 view = {"direction": (0.2, -1, 0.12), "up": (0, 0, 1)}
-relief = vizlight.bas_relief(dog, resolution=800, height=0.06, margin=0.05, **view)
+relief = vizlight.bas_relief(dog, resolution=1000, height=0.06, margin=0.1, **view)
 # A cast has no edges as sharp as a step of the depth map.
-relief = relief.gaussian_smooth(scalars="height", std_dev=1.5)
-plaster = Material(ambient=0.08, diffuse=1.0, specular=0.0, color=(1.0, 0.9, 0.76))
+relief = relief.gaussian_smooth(scalars="height", std_dev=3)
+plaster = Material(ambient=0.08, diffuse=0.85, specular=0.0, color=(1.0, 0.9, 0.76))
 panels = []
 for side, x, depth in (
-    ("left", -0.9, 0.005), ("right", 0.9, 0.005), ("left", -0.9, 0.02), ("left", -0.9, 0.05),
+    ("left", -0.9, 0.005), ("right", 0.9, 0.005), ("left", -0.9, 0.02), ("left", -0.9, 0.04),
 ):  # fmt: skip
     scene = Scene(lights=Light(position=(x, 0.8, 0.8)), material=plaster)
     lit = vizlight.relief_shadow(relief, scene, depth=depth, lit=True)
@@ -32,7 +32,7 @@ for side, x, depth in (
 
 plotter = render.make_plotter(
     panels,
-    camera=render.camera_on(relief, (0, 0, 1), parallel=True, aspect=1.28, zoom=0.92),
+    camera=render.camera_on(relief, (0, 0, 1), parallel=True, aspect=1.28, zoom=0.91),
     rows=2,
     size=(1640, 1280),
     background="white",
@@ -58,14 +58,14 @@ text = {"fontsize": 15, "ha": "center", "va": "center"}
 for part, name in ((along[:, 0] < 5, "$r_1$"), (along[:, 0] >= 5, "$r_2$")):
     piece = along[inside & part]
     axes.plot(*piece.T, color="#d1661b", lw=5, solid_capstyle="butt")
-    axes.text(*np.add(piece.mean(axis=0), (0.12, -0.42)), name, color="#d1661b", **text)
+    axes.text(*np.add(piece.mean(axis=0), (0.1, -0.32)), name, color="#d1661b", **text)
 axes.plot(*np.transpose([surface, start]), "k:", lw=2)
 axes.plot(*start, "ko", ms=8)
 axes.plot(*lamp, "*", color="#e8a800", ms=20)
-axes.text(*np.add(start, (-0.32, 0.0)), "p'", **text)
-axes.text(*np.add(surface, (-0.25, -0.25)), "d", **text)
+axes.text(*np.add(start, (-0.32, 0.0)), "$p'$", **text)
+axes.text(*np.add(surface, (-0.25, -0.25)), "$d$", **text)
 axes.text(*np.add(lamp, (0, -0.45)), "lamp", **text)
-axes.set_title(f"t = d / ($r_1$ + $r_2$) = {0.6 / length:.2f}", fontsize=16)
+axes.text(2.2, 3.6, f"$t = d / (r_1 + r_2) = {0.6 / length:.2f}$", fontsize=18, ha="center")
 axes.set(aspect="equal", xlim=(0, 10), ylim=(0, 4.7))
 axes.set_axis_off()
 plt.show()

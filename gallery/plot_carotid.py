@@ -16,10 +16,10 @@ from vizlight import Scene, legibility, load_example, render, streamlines
 
 scan = load_example("carotid.vti")
 scan["speed"] = np.linalg.norm(scan["velocity"], axis=1)
-seeds = scan.points[(scan["brightness"] > 200) & (scan["speed"] > 2)][::7]
-blood = streamlines(scan, tangents="velocity", seeds=seeds, max_length=40)
+seeds = scan.points[(scan["brightness"] > 200) & (scan["speed"] > 2)][::15]
+blood = streamlines(scan, tangents="velocity", seeds=seeds, max_length=80)
 blood = blood.clip_scalar(scalars="brightness", value=150, invert=False)
-blood = blood.remove_cells(blood.compute_cell_sizes()["Length"] < 5)
+blood = blood.remove_cells(blood.compute_cell_sizes()["Length"] < 15)
 vessel = scan.contour([145], scalars="brightness").connectivity("specified", region_ids=[0, 1])
 vessel = vessel.smooth_taubin(n_iter=40, pass_band=0.05).subdivide(2, "loop").compute_normals()
 plotter = pv.Plotter(off_screen=True, window_size=(1500, 1000))
@@ -31,7 +31,7 @@ vessel["glass"] = (rim[:, np.newaxis] ** 3 * [0, 0, 0, 150] + [205, 228, 255, 6]
 plotter.set_background("#14181d")
 bar = {"title": "speed, unit of the scan\n", "color": "white", "n_labels": 3, "fmt": "%.0f"}
 bar |= {"position_x": 0.62, "position_y": 0.85, "width": 0.33, "height": 0.09}
-look = {"line_diameter": 0.26, "render_lines_as_tubes": True, "clim": (0, 10)}
+look = {"line_diameter": 0.3, "render_lines_as_tubes": True, "clim": (0, 8), "halo": 0.6}
 plotter.vizlight.add_mesh(blood, scalars="speed", scalar_bar_args=bar, **look)
 plotter.add_mesh(vessel, scalars="glass", rgb=True, lighting=False)
 plotter.enable_depth_peeling(8)

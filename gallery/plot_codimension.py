@@ -23,10 +23,10 @@ curve = manifolds.parametric(
     [(0, 80 * np.pi)], 4, resolution=64 * 192,
 )  # fmt: skip
 shapes, far = {1: curve, 2: manifolds.torus(1.5, 0.75, resolution=192)}, {"distance": 1.6771}
-matte = Material(ambient=0.0, diffuse=1.0, specular=0.0)
-# The torus below the curves is black, so that their brightness can be compared.
-below = vizlight.manifold(shapes[2], **far)
-below["luminance"] = np.zeros(below.n_points)
+matte = Material(ambient=0.0, diffuse=1.0, specular=0.0, color="white")
+# The torus below the curves has the colour of the ground, so that their brightness can be compared.
+below, ground = vizlight.manifold(shapes[2], **far), "#14181d"
+below["rgb"] = np.tile(pv.Color(ground).float_rgb, (below.n_points, 1))
 panels = []
 for exponent in (1, "compensated"):
     for k, n, when in ((1, 3, "after"), (1, 4, "before"), (2, 3, "after"), (2, 4, "before")):
@@ -35,8 +35,9 @@ for exponent in (1, "compensated"):
         p, mean = 1 if exponent == 1 else brightness.exponent(k, n), mesh["luminance"].mean()
         title = f"{'curve' if k == 1 else 'surface'} in {n}-space, exponent {p:.3g}\n"
         title += f"mean {mean:.2f}, contrast {mesh['luminance'].std() / mean:.2f}"
-        panels.append(render.Panel(mesh if k == 2 else pv.MultiBlock([below, mesh]), title=title))
-camera = render.camera_on(below, (0.25, -1, 0.85), aspect=1, zoom=0.88)
-look = {"rows": 2, "size": (1800, 900), "background": "#14181d", "line_diameter": 0.04}
+        panels.append(render.Panel(mesh if k == 2 else pv.MultiBlock([below, mesh]), "rgb", title))
+room = (*below.bounds[:5], below.bounds[5] + 0.7)  # for titles
+camera = render.camera_on(room, (0.25, -1, 0.85), aspect=1, zoom=1.38)
+look = {"rows": 2, "size": (1800, 840), "background": ground, "line_diameter": 0.03, "halo": 0.3}
 plotter = render.make_plotter(panels, camera=camera, **look)
 plotter.show()

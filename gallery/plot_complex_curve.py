@@ -10,7 +10,6 @@ intersect itself. Colours show the phase of w, and meet at its three zeros; the 
 equal Re z and of equal Im z.
 """
 
-# sphinx_gallery_thumbnail_number = 2
 import matplotlib.colors as colors
 import numpy as np
 import pyvista as pv
@@ -42,7 +41,7 @@ wheel = colors.LinearSegmentedColormap.from_list("wheel", hues)
 scene = Scene(
     lights=Light(direction=(-0.4, -0.9, 0.9, 0.4)),
     view=View(direction=(0.5, -1, 0.7, 0)),
-    material=Material(ambient=0.45, diffuse=0.6, specular=0.2, shininess=25),
+    material=Material(ambient=0.55, diffuse=0.5, specular=0.2, shininess=25),
 )
 levels = np.linspace(-1.2, 1.2, 9)
 
@@ -57,29 +56,22 @@ def turned(degrees):
     return pv.MultiBlock([lit, lines])
 
 
-angles = (0, 30, 60, 90)
-panels = [render.Panel(turned(angle), "rgb", f"turned by {angle} degrees") for angle in angles]
+panels = [render.Panel(turned(angle), "rgb", f"turned by {angle}°") for angle in (0, 20, 45, 70, 90)]
 meshes = pv.MultiBlock([block for panel in panels for block in panel.mesh])
-camera = render.camera_on(meshes, (0.5, -1, 0.7), aspect=0.78, zoom=0.86)
-look = {"size": (2000, 640), "background": "white", "line_width": 1}
+camera = render.camera_on(meshes, (0.5, -1, 0.7), aspect=0.9, zoom=0.86)
+# A key of the phase, which faces the eye.
+axis = -np.array(camera.direction)
+ring = pv.Disc(inner=0.6, outer=1.1, normal=axis, r_res=8, c_res=180)
+right = np.cross(camera.up, axis) / np.linalg.norm(np.cross(camera.up, axis))
+up = np.cross(axis, right)
+phase = np.arctan2(ring.points @ up, ring.points @ right)
+ring["rgb"] = wheel(phase / (2 * np.pi) + 0.5)[:, :3]
+panels.append(render.Panel(ring, "rgb", "phase of w"))
+look = {"rows": 2, "size": (1650, 1240), "background": "white", "line_width": 1.5}
 plotter = render.make_plotter(panels, camera=camera, **look)
-plotter.show()
-
-# %%
-# Halfway through the quarter turn. The eye that sees the light stays in 4-space.
-
-lit, lines = turned(45)
-plotter = pv.Plotter(off_screen=True, window_size=(1200, 1000))
-plotter.background_color = "white"
-bar = {
-    "title": "phase of w, radians\n", "color": "black", "vertical": True, "n_labels": 3,
-    "height": 0.5, "position_x": 0.82, "position_y": 0.25, "fmt": "%.2f",
-}  # fmt: skip
-plotter.vizlight.add_mesh(lit, scalar_bar_args=bar)
-drawn = plotter.add_mesh(lines, color="#262626", line_width=2, lighting=False)
-# The lines lie in the surface: shift them slightly toward the viewer.
-drawn.mapper.SetResolveCoincidentTopologyToPolygonOffset()
-drawn.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-4, -4)
-plotter.camera = render.camera_on(lit, (0.5, -1, 0.7), aspect=1.2, zoom=0.95)
-plotter.enable_anti_aliasing("ssaa")
+places = [1.5 * (np.cos(turn) * right + np.sin(turn) * up) for turn in np.arange(4) * np.pi / 2]
+words = {"shape": None, "show_points": False, "font_size": 26, "bold": False, "always_visible": True}
+words["text_color"] = "black"
+words |= {"justification_horizontal": "center", "justification_vertical": "center"}
+plotter.add_point_labels(np.array(places), ["0", r"$\pi/2$", r"$\pi$", r"$-\pi/2$"], **words)
 plotter.show()

@@ -21,14 +21,24 @@ from vizlight.model import highlights
 def shiny(mesh, degrees, model, power):
     """Return a mesh with the highlight of a lamp so far from the eye, which is above it."""
     angle = np.radians(degrees)
-    scene = Scene(
-        lights=Light(direction=(-np.sin(angle), 0, np.cos(angle))),
-        view=View(direction=(0, 0, 1)),
-        material=Material(
-            ambient=0.4, diffuse=0, specular=0.6, shininess=power, color=(0.28, 0.5, 0.85)
-        ),
-    )
+    paint = Material(ambient=0.3, diffuse=0.3, specular=0.5, shininess=power, color="#5a94e6")
+    lamp = Light(direction=(-np.sin(angle), 0, np.cos(angle)))
+    scene = Scene(lights=lamp, view=View(direction=(0, 0, 1)), material=paint)
     return vizlight.illuminate(mesh, scene, model=model)
+
+
+def show(solids, bounds, labels, size):
+    """Draw solids from above, with labels centred at their places."""
+    camera = render.camera_on(bounds, (0, 0, 1), parallel=True)
+    camera.parallel_scale = (bounds[3] - bounds[2]) / 2
+    look = {"background": "#14181d", "light": "points", "size": size}
+    plotter = render.make_plotter(render.Panel(solids, "rgb"), camera=camera, **look)
+    plotter.add_point_labels(
+        np.array([(x, y, 1) for x, y, _ in labels]), [text for *_, text in labels],
+        always_visible=True, text_color="white", font_size=22, bold=False, shape=None,
+        show_points=False, justification_horizontal="center", justification_vertical="center",
+    )  # fmt: skip
+    plotter.show()
 
 
 ball = pv.Sphere(radius=1, theta_resolution=180, phi_resolution=180)
@@ -37,27 +47,19 @@ ball.point_data.active_normals_name = "Normals"
 rows = {"Phong, power 8": None, **{f"Blinn, power {8 * f}": f for f in (1, 2, 4, 6)}}
 rows["Blinn, 32 cos(a/2)"] = "rule"
 angles = (0, 45, 90, 135, 160)
-balls = pv.MultiBlock()
-for row, factor in enumerate(rows.values()):
+balls, labels = pv.MultiBlock(), [(-2.6, 1.45, "from lamp to eye: a")]
+labels += [(2.2 * column, 1.45, f"{degrees}°") for column, degrees in enumerate(angles)]
+for row, (name, factor) in enumerate(rows.items()):
+    labels.append((-2.6, -2.2 * row, name))
     for column, degrees in enumerate(angles):
         rule = highlights.simple_factor(np.radians(degrees)) if factor == "rule" else factor or 1.0
         lit = shiny(ball, degrees, "blinn" if factor else "phong", 8 * rule)
         balls.append(lit.translate((2.2 * column, -2.2 * row, 0)))
-camera = render.camera_on(
-    (-5, 10.1, -12.2, 2.2, 0, 0), (0, 0, 1), parallel=True, aspect=1.05, zoom=1.38
-)
-look = {"background": "#14181d", "light": "points"}
-plotter = render.make_plotter(render.Panel(balls, "rgb"), camera=camera, size=(1200, 1140), **look)
-letters = {"text_color": "white", "font_size": 20, "shape": None, "show_points": False}
-places = [(-4.9, -2.2 * row - 0.1, 1) for row in range(len(rows))]
-places += [(2.2 * column - 0.3, 1.35, 1) for column in range(len(angles))] + [(-4.9, 1.35, 1)]
-names = [*rows, *(f"{degrees}°" for degrees in angles), "from lamp to eye:"]
-plotter.add_point_labels(places, names, always_visible=True, **letters)
-plotter.show()
+show(balls, (-4.5, 10.1, -12.3, 2.1, 0, 0), labels, (1220, 1200))
 
 # %%
-# Three shapes under a lamp 45 degrees from the eye, from above to below with the powers of the
-# titles: both models look alike.
+# Three shapes under a lamp 45 degrees from the eye: with four times the power both models look
+# alike.
 
 turn, down = np.meshgrid(np.linspace(0, 2 * np.pi, 400), np.linspace(1e-9, 1, 120))
 along = down * np.pi / 2
@@ -66,18 +68,15 @@ cap = pv.StructuredGrid(wide * np.cos(turn), wide * np.sin(turn), 0.7 * np.cos(a
 cap = cap.extract_surface(algorithm="dataset_surface").clean().compute_normals(feature_angle=180)
 rod = pv.Cylinder(radius=0.5, height=1.9, direction=(0, 1, 0), resolution=200, capping=False)
 shapes = cap.rotate_x(-35), rod.compute_normals(split_vertices=False).rotate_x(8), ball
-panels, powers = [], (4, 8, 16, 32)
-for model, factor in (("phong", 1), ("blinn", 4)):
-    block = pv.MultiBlock()
-    for row, power in enumerate(powers):
+solids, labels = pv.MultiBlock(), []
+for left, model, factor in ((0, "phong", 1), (8, "blinn", 4)):
+    labels += [(left + 2.2, 1.45, model.title()), (left - 1.6, 1.45, "power")]
+    for row, power in enumerate((4, 8, 16, 32)):
+        labels.append((left - 1.6, -2.2 * row, f"{factor * power}"))
         for column, shape in enumerate(shapes):
             lit = shiny(shape, 45, model, factor * power)
-            block.append(lit.translate((2.2 * column, -2.2 * row, 0)))
-    used = ", ".join(f"{factor * power}" for power in powers)
-    panels.append(render.Panel(block, "rgb", f"{model.title()}, powers {used}"))
-camera = render.camera_on(block, (0, 0, 1), parallel=True, aspect=0.75, zoom=0.94)
-plotter = render.make_plotter(panels, camera=camera, size=(1200, 860), **look)
-plotter.show()
+            solids.append(lit.translate((left + 2.2 * column, -2.2 * row, 0)))
+show(solids, (-2.3, 13.7, -7.9, 2.0, 0, 0), labels, (1600, 990))
 
 # %%
 # The difference of both highlights, Phong's less Blinn's of four times the power, over all normals
@@ -92,10 +91,11 @@ lamp, eye = np.array([-1.0, 0, 0]), np.array([0.0, 0, 1])
 mirror = 2 * normals @ lamp * normals[..., 2] - lamp @ eye
 half = normals @ (lamp + eye) / np.linalg.norm(lamp + eye)
 error = 255 * (np.maximum(mirror, 0) ** 10 - np.maximum(half, 0) ** 40)
-levels = np.arange(-68, 69, 8)
-figure, axes = plt.subplots(figsize=(8, 6.4), layout="constrained")
-chart = axes.contourf(*np.degrees([phi, theta]), error, levels=levels, cmap="coolwarm")
+figure, axes = plt.subplots(figsize=(6.4, 6.4), layout="constrained")
+levels, places = np.arange(8, 65, 8), (*np.degrees([phi, theta]), error)
+axes.contourf(*places, levels=levels, cmap="Reds")
+axes.clabel(axes.contour(*places, levels=levels, colors="k", linewidths=0.7), fontsize=9)
 axes.set(xlabel="phi of the normal, degrees", ylabel="theta of the normal, degrees")
 axes.set(aspect="equal", xlim=(0, 90), ylim=(45, 135), xticks=range(0, 91, 15))
-figure.colorbar(chart, label="Phong less Blinn, steps of 255", ticks=range(-60, 61, 20))
+axes.set_title("Phong, power 10, less Blinn, power 40, in steps of 255\nlamp 90° from the eye")
 plt.show()

@@ -46,14 +46,15 @@ plotter = render.make_plotter(
     [render.Panel(found["bands"], title=name) for name, found in zip(shapes, drawn, strict=True)],
     camera=camera,
     rows=2,
-    size=(1800, 980),
+    size=(1900, 960),
     cmap="bone",
     bar="luminance",
 )
-for number, found in enumerate(drawn):
+for number, ((solid, _), found) in enumerate(zip(shapes.values(), drawn, strict=True)):
+    plotter.subplot(*divmod(number, 4))
+    plotter.add_silhouette(vizlight.to_polydata(solid).clean(), color="black", feature_angle=35)
     if not found["contours"].n_points:
         continue  # each face of the block is one band
-    plotter.subplot(*divmod(number, 4))
     lines = plotter.add_mesh(found["contours"], color="black", line_width=1.5)
     # The lines lie in the bands: shift them slightly toward the viewer.
     lines.mapper.SetResolveCoincidentTopologyToPolygonOffset()

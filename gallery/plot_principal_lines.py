@@ -55,15 +55,15 @@ scene = Scene(
 )
 before = vizlight.illuminate(surface, scene)
 lines = vizlight.streamlines(
-    surface, scene, tangents="bend", line_field=True, spacing=0.1, facing="eye"
+    surface, scene, tangents="bend", line_field=True, spacing=0.11, facing="eye"
 )
-blue = Material(ambient=0.3, diffuse=0.7, specular=0, color=(0.10, 0.17, 0.38))
+blue = Material(ambient=0.3, diffuse=0.7, specular=0, color=(0.16, 0.26, 0.52))
 after = pv.MultiBlock([vizlight.illuminate(surface, scene.replace(material=blue)), lines])
 
 panels = [
     render.Panel(before, "rgb", "the surface, lit by its normals"),
     render.Panel(after, "rgb", "its lines of curvature, lit by their directions"),
 ]
-look = {"size": (1700, 900), "background": "#14181d", "line_diameter": 0.042}
+look = {"size": (1700, 900), "background": "#14181d", "line_diameter": 0.036, "halo": "#1c2f60"}
 plotter = render.make_plotter(panels, camera=camera, **look)
 plotter.show()

@@ -9,23 +9,28 @@ the study *strokes* measures all six. LIC and evenly spaced lines are read bette
 has no key to the direction. Both together are in the example *The winds of July*.
 """
 
+import numpy as np
 import pyvista as pv
 from vtkmodules.vtkRenderingLICOpenGL2 import vtkSurfaceLICMapper
 
 from vizlight import Scene, load_example, presets, render, streamlines
 
-wind = load_example("winds_of_july.vtp")
+wind, eye = load_example("winds_of_july.vtp"), np.array([0.42, 1, 0.1])
 arrows = wind.glyph(orient="wind", scale=False, factor=0.09, tolerance=0.045)
 lines = streamlines(wind, tangents="wind", spacing=0.06).scale(1.005)
-lic = vtkSurfaceLICMapper(input_data_object=wind, scalar_visibility=False)
+# Strokes at the limb are crowded.
+arrows, lines = (strokes.clip(eye, origin=0.45 * eye, invert=False) for strokes in (arrows, lines))
+lic = pv.Actor(mapper=vtkSurfaceLICMapper(input_data_object=wind, scalar_visibility=False))
+lic.prop.ambient = 0.4
 hue, field = presets.direction(), {"tangents": "wind", "exponent": 2}
 
-plotter = pv.Plotter(off_screen=True, shape=(2, 3), window_size=(1860, 1040), border=False)
+size = {"window_size": (1900, 1060), "shape": (2, 4), "col_weights": (1, 1, 1, 0.45)}
+plotter = pv.Plotter(off_screen=True, border=False, **size)
 ways = {
     "plain: 42": lambda: None,
     "arrows: 18": lambda: plotter.add_mesh(arrows, color="black"),
-    "LIC: 3.4": lambda: plotter.add_actor(pv.Actor(mapper=lic)),
-    "lines: 2.6": lambda: plotter.add_mesh(lines, color="black", line_width=3),
+    "LIC: 3.4": lambda: plotter.add_actor(lic),
+    "lines: 2.6": lambda: plotter.add_mesh(lines, color="black", line_width=2.5),
     "white light: 45": lambda: plotter.vizlight.add_mesh(wind, scene=Scene(), **field),
     "light of direction: 4.5": lambda: plotter.vizlight.add_mesh(wind, scene=hue, **field),
 }
@@ -33,7 +38,12 @@ for number, (title, draw) in enumerate(ways.items()):
     plotter.subplot(*divmod(number, 3))
     plotter.add_mesh(wind.scale(0.995), color="lightsteelblue", smooth_shading=True)
     draw()
-    plotter.add_text(f"{title}°", position="upper_edge", color="black", font_size=12)
-    plotter.camera = render.camera_on(wind.bounds, (0.42, 1, 0.1), zoom=1.46)
-plotter.vizlight.add_key(hue, exponent=2)
+    plotter.add_text(f"\n{title}°", position="upper_edge", color="black", font_size=11)
+    plotter.camera = render.camera_on(wind.bounds, eye, zoom=1.32)
+plotter.subplot(1, 3)
+plotter.add_mesh(presets.key(hue, exponent=2), scalars="rgb", rgb=True, lighting=False)
+plotter.add_text("direction\non the screen", position=(0.2, 0.2), viewport=True, font_size=11)
+plotter.view_xy()
+plotter.camera.zoom(1.2)
+plotter.enable_anti_aliasing("msaa", multi_samples=8)
 plotter.show()

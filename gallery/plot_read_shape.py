@@ -17,26 +17,31 @@ from vizlight import Material, Scene, presets, render
 cortex = vizlight.load_example("brain.vti").contour([55.5]).connectivity("largest")
 # Some points deep in folds see nothing of the sky: a warning says how many.
 cortex = vizlight.sky(cortex, error=0.05)
-scene = presets.shape().replace(material=Material(ambient=0.3, diffuse=0.7, specular=0))
+scene = presets.shape().replace(material=Material(ambient=0.3, diffuse=0.6, specular=0))
 
-plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=(1800, 760), border=False)
+size = {"window_size": (2000, 820), "shape": (1, 3), "col_weights": (1, 1, 0.25)}
+plotter = pv.Plotter(off_screen=True, border=False, **size)
 plotter.set_background("#14181d", all_renderers=True)
 words = {"position": "upper_edge", "color": "white", "font_size": 11}
-plotter.add_text("PyVista: smooth shading", **words)
+plotter.add_text("\nPyVista: smooth shading", **words)
 plain = plotter.add_mesh(cortex, color="white", smooth_shading=True, show_scalar_bar=False)
-plotter.camera = render.camera_on(cortex, (-1, 0.25, 0.3), aspect=1.1, zoom=0.9)
+plotter.camera = camera = render.camera_on(cortex, (-1, 0.25, 0.3), aspect=1.1, zoom=0.96)
 plain = Scene.from_plotter(plotter, actor=plain)
+plotter.enable_anti_aliasing("ssaa")
 plotter.subplot(0, 1)
-plotter.add_text("vizlight: hues of the slope, light of the sky", **words)
+plotter.add_text("\nvizlight: hues of the slope, light of the sky", **words)
 lit = cortex.vizlight.illuminate(scene, occlusion="sky")
 plotter.vizlight.add_mesh(lit)
-plotter.vizlight.add_key(scene)
-plotter.link_views()
+plotter.camera = camera
 plotter.enable_anti_aliasing("ssaa")
+plotter.subplot(0, 2)
+plotter.add_mesh(presets.key(scene), scalars="rgb", rgb=True, lighting=False)
+plotter.add_text("the way\nit faces", position=(0.27, 0.3), viewport=True, color="white", font_size=11)
+plotter.view_xy()
 plotter.show(auto_close=False)
 
 # %%
 # What can be read in this light, and in PyVista's:
 
 for mesh, light in ((lit, scene), (cortex, plain)):
-    print(vizlight.legibility(mesh, light, view=plotter.camera))
+    print(vizlight.legibility(mesh, light, view=camera))

@@ -15,23 +15,35 @@ import vizlight
 from vizlight import Material, presets, render
 
 fibres = vizlight.load_example("fibre_bundle.vtp")
-scene = presets.slope().replace(material=Material(ambient=0.25, diffuse=0.75, specular=0))
+scene = presets.slope().replace(material=Material(ambient=0.12, diffuse=0.88, specular=0))
+look = {"line_diameter": 0.2, "exponent": 2}
 
-plotter = pv.Plotter(off_screen=True, shape=(2, 1), window_size=(1400, 1240), border=False)
+size = {"window_size": (1500, 1200), "shape": (2, 2), "col_weights": (1, 0.13)}
+plotter = pv.Plotter(off_screen=True, border=False, **size)
 plotter.set_background("#14181d", all_renderers=True)
-plotter.add_mesh(fibres, color="tan", line_width=4, render_lines_as_tubes=True)
-words = {"position": "upper_edge", "color": "white", "font_size": 11}
-plotter.add_text("PyVista: tubes in its light", **words)
-plotter.camera = render.camera_on(fibres, (0.3, -1, 0.2), aspect=1.95, zoom=0.95)
-plotter.subplot(1, 0)
-plotter.add_text("vizlight: one lamp at the eye", **words)
-plotter.vizlight.add_mesh(fibres, scene=scene, line_diameter=0.2)
-plotter.vizlight.add_key(scene, question="slope")
-plotter.link_views()
+words = {"position": "upper_edge", "color": "white", "font_size": 12}
+camera = render.camera_on(fibres, (0.3, -1, 0.2), aspect=2.2, zoom=0.96)
+plotter.add_mesh(fibres.tube(radius=0.1), color="tan", smooth_shading=True)
+plotter.add_text("\nPyVista: tubes in its light", **words)
+plotter.camera = camera
 plotter.enable_anti_aliasing("ssaa")
+plotter.subplot(1, 0)
+plotter.vizlight.add_mesh(fibres, scene=scene, **look)
+plotter.add_text("\nvizlight: one lamp at the eye", **words)
+plotter.camera = camera
+plotter.enable_anti_aliasing("ssaa")
+plotter.subplot(1, 1)
+bar = presets.key(scene, question="slope", exponent=2).rotate_z(90)
+plotter.add_mesh(bar, scalars="rgb", rgb=True, lighting=False)
+words = {"shape": None, "show_points": False, "font_size": 18, "text_color": "white"}
+words |= {"justification_horizontal": "center", "justification_vertical": "center"}
+plotter.add_point_labels([(0.0, 1.2, 0), (0, -1.2, 0)], ["toward you", "across"], **words)
+plotter.view_xy()
+plotter.camera.zoom(1.3)
 plotter.show(auto_close=False)
 
 # %%
 # What can be read in this light:
 
-print(vizlight.legibility(fibres, scene, view=plotter.camera, line_diameter=0.2))
+plotter.subplot(1, 0)
+print(vizlight.legibility(fibres, scene, view=plotter.camera, **look))

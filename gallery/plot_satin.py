@@ -45,5 +45,6 @@ plotter = render.make_plotter(
     size=(1400, 1400),
     background="#14181d",
     line_diameter=0.007,
+    halo=0.5,
 )
 plotter.show()

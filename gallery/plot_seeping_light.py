@@ -16,14 +16,14 @@ import vizlight
 from vizlight import Light, Material, Scene, render
 
 dog = vizlight.load_example("dog.vtp").compute_normals(split_vertices=False)
-head = (0.15, 0.47, -0.1, 0.1, 0.5, 0.81)
-camera = render.camera_on(head, (1.0, -0.85, 0.12), aspect=0.9, zoom=1.3)
-behind = Light(direction=(-0.9, 0.75, 0.35))
+head = (0.12, 0.47, -0.1, 0.1, 0.44, 0.81)
+camera = render.camera_on(head, (1.0, -0.85, 0.12), aspect=0.9, zoom=1.25)
+behind = Light(direction=(-0.9, 0.75, 0.35), intensity=0.75)
 beside = Light(direction=(0.2, -1, 0.9), intensity=0.22)
 panels = []
 for title, depth in (
     ("cosine: no light passes", 0.0), ("light passes, d = 0.006", 0.006),
-    ("light passes, d = 0.02", 0.02),
+    ("light passes, d = 0.01", 0.01),
 ):  # fmt: skip
     scene = Scene(
         lights=[behind, beside],
@@ -31,6 +31,8 @@ for title, depth in (
     )
     lit = vizlight.relief_shadow(dog, scene, depth=depth, lit=True)
     lit["rgb"] = lit["rgb"] ** 0.65
+    # A bust: the cut runs from the nape to the chest.
+    lit = lit.clip(normal=(1, 0, 0.9), origin=(0.16, 0, 0.5), invert=False)
     panels.append(render.Panel(lit, "rgb", title))
 
 plotter = render.make_plotter(panels, camera=camera, size=(1950, 760), background="#14181d")
@@ -41,13 +43,16 @@ plotter.show()
 # grows, at first the ratio faster, later the exponential. The source on cos-theta shadows calls
 # them qualitatively alike.
 
-r = np.geomspace(0.002, 1, 200)
+r = np.linspace(0.01, 10, 400)  # in depths d
 figure, axes = plt.subplots(figsize=(8, 5), layout="constrained")
-for depth, color in ((0.006, "#1f6f9f"), (0.02, "#c8641e")):
-    axes.semilogx(r, np.minimum(depth / r, 1), color=color, lw=2.5, label=f"d / r, d = {depth}")
-    scattered = np.exp(-np.log(2) * r / (2 * depth))
-    axes.semilogx(r, scattered, "--", color=color, lw=2, label=f"exp(-a r), a = ln 2 / {2 * depth}")
-axes.set(xlabel="way through the solid r, in units of the dog", ylabel="share of light that passes")
+text = {"fontsize": 15, "va": "bottom"}
+axes.plot(r, np.minimum(1 / r, 1), color="#c8641e", lw=3)
+axes.text(1.35, 0.8, "$t = d / r$", color="#c8641e", **text)
+axes.plot(r, np.exp(-np.log(2) * r / 2), "--", color="#1f6f9f", lw=3)
+axes.text(4.0, 0.26, "$e^{-a r}$, $a = \\ln 2 / (2 d)$", color="#1f6f9f", **text)
+axes.set_xlabel("way through the solid over the depth, $r / d$", fontsize=13)
+axes.set_ylabel("share of light that passes", fontsize=13)
+axes.tick_params(labelsize=12)
+axes.set(xlim=(0, 10), ylim=(0, 1.05))
 axes.spines[["top", "right"]].set_visible(False)
-axes.legend(frameon=False)
 plt.show()

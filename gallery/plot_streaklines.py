@@ -14,11 +14,12 @@ from tempfile import mkdtemp
 
 import numpy as np
 import pyvista as pv
+from matplotlib.colors import LinearSegmentedColormap
 
 import vizlight
 from vizlight import Light, Material, Scene, View, render
 
-times = np.linspace(0, 6.4, 65)  # a streak has at most 64 points
+times = np.linspace(0, 6, 136)
 steps = []
 for time in times:
     step = pv.ImageData(dimensions=(141, 61, 3), spacing=(0.05, 0.05, 0.05), origin=(0, -1.5, 0))
@@ -35,30 +36,31 @@ for time in times:
     steps.append(step)
 
 seeds = np.linspace((0.05, -0.32, 0.05), (0.05, 0.32, 0.05), 26)
-camera = render.camera_on((0.2, 5.0, -1, 1, 0, 0.1), (0, -0.3, 1), aspect=2.7, zoom=2.6)
+camera = render.camera_on((0.4, 5.2, -1, 1, 0, 0.1), (0, -0.3, 1), aspect=2.6, zoom=2.75)
 scene = Scene(
     lights=Light(direction=(-0.7, 0.6, 0.6)),
     view=View.from_camera(camera),
-    material=Material(ambient=0.45, diffuse=0.9, specular=0.4, shininess=25),
+    material=Material(ambient=0.7, diffuse=0.6, specular=0.4, shininess=25),
 )
 frames = vizlight.pathlines(
     steps, scene, times=times, tangents="velocity", kind="streaklines", seeds=seeds,
-    model="cylinder", step=0.6,
+    model="cylinder", step=0.6, tail=4,
 )  # fmt: skip
 
-plotter = pv.Plotter(off_screen=True, window_size=(700, 266))
+plotter = pv.Plotter(off_screen=True, window_size=(1000, 380))
 plotter.background_color = "#14181d"
 plotter.enable_anti_aliasing("ssaa")
 plotter.camera = camera
-words = "smoke of a row of points, from new (red) to old (blue)"
-plotter.add_text(words, position="upper_edge", color="white", font_size=8)
-plotter.open_gif(Path(mkdtemp()) / "smoke.gif", fps=12)
+tints = ["#ff6a4d", "#ffc27a", "#f7f0d0", "#9ad4ee", "#5a8fe8"]
+aged = {"cmap": LinearSegmentedColormap.from_list("age", tints), "clim": (0, 4)}
+plotter.vizlight.add_key(scene, question="value", title="Age of the smoke", lying=True, **aged)
+plotter.open_gif(Path(mkdtemp()) / "smoke.gif", fps=8)
 for number, lines in enumerate(frames):
     lines["age"] = lines.field_data["TimeValue"][0] - lines["Time"]
-    lit = vizlight.tint(lines, "age", cmap="RdYlBu", clim=(-1, 6))
+    lit = vizlight.tint(lines, "age", **aged)
     plotter.add_mesh(
-        lit, scalars="rgb", rgb=True, lighting=False, line_width=1.8, name="smoke", render=False
+        lit, scalars="rgb", rgb=True, lighting=False, line_width=2.6, name="smoke", render=False
     )
-    if number > 44:  # before, there is little smoke
+    if number > 89 and number % 3 == 0:  # a period of the vortices
         plotter.write_frame()
 plotter.show()

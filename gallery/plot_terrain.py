@@ -14,22 +14,22 @@ from matplotlib.colors import LinearSegmentedColormap
 from vizlight import Light, Material, Scene, legibility, load_example, relief_shadow, render, tint
 
 tints = ["#1d3f72", "#2b6a9c", "#6fb0cc", "#d6ecec", "#5f9a52", "#b5965f", "#f4efe6"]
-places = [0, 0.3, 0.58, 0.665, 0.67, 0.83, 1]  # of heights from -5800 to 2860 m: 0.67 is the coast
+places = [0, 0.3, 0.58, 0.665, 0.6665, 0.83, 1]  # of heights from -6000 to 3000 m
 tints = LinearSegmentedColormap.from_list("sea and land", list(zip(places, tints, strict=True)))
 relief = load_example("hawaii.vti").resample(6.0, interpolation="bspline")
 sun = Light(direction=(-0.87, 0.25, 0.42), color="#ffc080", intensity=1.1)
 blue = Light(direction=(0.48, -0.14, 0.87), color="#80b8ff", intensity=0.6)
 scene = Scene(lights=[sun, blue], material=Material(ambient=0.4, diffuse=0.85, specular=0))
-options = {"elevation": "elevation", "exaggeration": 9, "depth": 1500}
+options = {"elevation": "elevation", "exaggeration": 9, "depth": 1500, "angular_diameter": 0.06, "samples": 8}
 lit = relief_shadow(relief, scene, lit=True, occlusion="sky", **options)
-lit = tint(lit, "elevation", cmap=tints, clim=(-5800, 2860))
+lit = tint(lit, "elevation", cmap=tints, clim=(-6000, 3000))
 ground = lit.warp_by_scalar("elevation", factor=9)
 
 plotter = pv.Plotter(off_screen=True, window_size=(1500, 1000))
-plotter.background_color = "#1f4a7c"
-bar = {"title": "height, m\n", "color": "white", "fmt": "%.0f", "n_labels": 3, "vertical": True}
+plotter.background_color = "#14181d"
+bar = {"title": "height, m\n", "color": "white", "fmt": "%.0f", "n_labels": 4, "vertical": True}
 plotter.vizlight.add_mesh(ground, scalar_bar_args={**bar, "position_y": 0.5})
-plotter.camera = render.camera_on((4e5, 1e6, 2.2e5, 6.6e5, 0, 0), (0.3, -1, 1.3), zoom=1.55)
+plotter.camera = render.camera_on((3.9e5, 9.9e5, 2.1e5, 6.5e5, 0, 0), (0.3, -1, 1.3), zoom=1.64)
 north = pv.Arrow(start=(4.4e5, 2e5, -3.8e4), direction=(0, 1, 0), scale=6e4)
 plotter.add_mesh(north + pv.Box((4.6e5, 5.6e5, 2e5, 2.06e5, -3.9e4, -3.8e4)), color="white")
 places = [(4.8e5, 2.15e5, -3.8e4), (4.34e5, 2.65e5, -3.8e4)]

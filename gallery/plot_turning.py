@@ -10,8 +10,6 @@ lightness with that slope is -1.00 all the way; of tubes in PyVista's light, whi
 4-space, it is -0.2 to -0.4. Colours of one lightness tell the tori apart.
 """
 
-from tempfile import mkdtemp
-
 import numpy as np
 import pyvista as pv
 
@@ -27,17 +25,15 @@ fibres = pv.PolyData(np.zeros((number.size, 3)), lines=np.insert(number, 0, 193,
 fibres["position"], fibres["frame"] = pairs.view(float), (1j * pairs).view(float)
 fibres["torus"] = height.ravel()
 light, eye = (kind(direction=(0.3, -1, 0.6, 0)) for kind in (Light, View))
-scene = Scene(lights=light, view=eye, material=Material(ambient=0.1, diffuse=0.9, specular=0))
+scene = Scene(lights=light, view=eye, material=Material(ambient=0.15, diffuse=0.85, specular=0))
 
-plotter = pv.Plotter(off_screen=True, window_size=(440, 390))
-plotter.background_color = "#14181d"
-plotter.camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), zoom=1.55)
-plotter.enable_anti_aliasing("ssaa")
-plotter.vizlight.add_key(scene, question="slope", size=0.2)
-plotter.open_gif(mkdtemp() + "/turning.gif", fps=7)
-for angle in np.linspace(0, np.pi, 18, endpoint=False):
-    lit = vizlight.project(fibres, scene=scene, rotation=("xw", angle), distance=1.3)
+panels = []
+for degrees in range(0, 180, 30):
+    turn = ("xw", np.radians(degrees))
+    lit = vizlight.project(fibres, scene=scene, rotation=turn, distance=1.3)
     lit = vizlight.tint(lit, "torus", cmap=["#74adfe", "#f689b3", "#cba656"])
-    plotter.vizlight.add_mesh(lit, line_diameter=0.033, name="fibres", show_scalar_bar=False)
-    plotter.write_frame()
+    panels.append(render.Panel(lit, "rgb", f"turned by {degrees}°"))
+camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), aspect=1, zoom=1.42)
+look = {"rows": 2, "size": (1320, 940), "background": "#14181d", "line_diameter": 0.033}
+plotter = render.make_plotter(panels, camera=camera, halo=0.5, **look)
 plotter.show()

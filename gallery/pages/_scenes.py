@@ -88,7 +88,7 @@ PARTS = {
     "plot_codimension": (0.0, 0.57, 0.5, 0.93),
     "plot_complex_curve": (0.2, 0.02, 0.82, 0.98),
     "plot_depth": (0.5, 0.06, 1.0, 0.7),
-    "plot_highlights": (0.26, 0.09, 0.97, 0.38),
+    "plot_highlights": (0.23, 0.06, 0.99, 0.37),
     "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
     "plot_principal_lines": (0.5, 0.07, 1.0, 0.93),
     "plot_read_direction": (0.67, 0.53, 1.0, 1.0),
@@ -99,6 +99,7 @@ PARTS = {
     "plot_satin": (0.5, 0.53, 1.0, 0.97),
     "plot_seeping_light": (0.67, 0.06, 1.0, 0.8),
     "plot_sky": (0.5, 0.55, 0.75, 1.0),
+    "plot_turning": (0.68, 0.55, 1.0, 1.0),
     "plot_terrain_day": (0.69, 0.06, 0.98, 0.44),
 }
 
@@ -134,6 +135,9 @@ class _Export:
             pages = []
             for renderer in self.plotter.renderers:
                 title = _title(renderer)
+                # Beside views with titles, one without holds a key.
+                if len(self.plotter.renderers) > 1 and not title:
+                    continue
                 if _export(self.plotter, renderer, path, title):
                     pages.append((title, path.read_text("utf-8")))
         if not pages:

@@ -292,8 +292,8 @@ class MarginKey:
 
     def __init__(self, mesh: pv.PolyData, size: float, ink: Color, *, lying: bool) -> None:
         self.lies = lying
-        self._mesh = mesh.copy()
-        self._flat = np.array(mesh.points, dtype=np.float64)
+        self._mesh, self._fading = _with_soft_rims(mesh)
+        self._flat = np.array(self._mesh.points, dtype=np.float64)
         # A swatch before a bar is a part of its length.
         start = min(float(self._flat[:, 0].min()), -1.0)
         #: What stands above the data, and above the key: its unit, or all where there are several.
@@ -314,6 +314,7 @@ class MarginKey:
         in_pixels.SetCoordinateSystemToViewport()
         mapper.SetInputData(self._mesh)
         mapper.SetTransformCoordinate(in_pixels)
+        mapper.SetTransformCoordinateUseDouble(True)
         mapper.SetScalarModeToUsePointFieldData()
         mapper.ColorByArrayComponent(RGB, 0)
         mapper.SetColorModeToDirectScalars()
@@ -431,7 +432,8 @@ class MarginKey:
         if not self._marks:
             self._heading.SetPosition(x, y - box[1] / 2)
             top = y + box[1] / 2
-            self._move(self._flat * self._half + np.array([x, top - self._half, 0]))
+            disc = self._flat * self._half + self._fading
+            self._move(disc + np.array([x, top - self._half, 0]))
             return
         tall = box[1] - letters - words - (0.5 * letters if self._lines else 0)
         # The title stands above a bar, whose numbers stand at its right.
@@ -487,6 +489,32 @@ class MarginKey:
 
     def _move(self, places: Array) -> None:
         self._mesh.SetPoints(new_points(places.astype(np.float32)))
+
+
+def _with_soft_rims(key: pv.PolyData) -> tuple[pv.PolyData, Array]:
+    """Return a key whose round rims end in rings that fade, and vectors across these of length 1.
+
+    The rings are as wide as a pixel: a window that supersamples its data does not smooth rims.
+    """
+    places, colors = np.asarray(key.points, dtype=np.float64), np.asarray(key[RGB])
+    radius = np.hypot(*places.T[:2])
+    rims = [] if WORDS not in key.field_data or len(key.field_data[WORDS]) > 1 else [1.0, -1.0]
+    faces, count = [key.faces], len(places)
+    index, across = np.arange(count), [0 * places]
+    for side in rims:
+        ring = np.flatnonzero(np.isclose(radius, (side * radius).max() * side, atol=1e-6))
+        if radius[ring[0]] < 1e-6:
+            continue
+        beyond = len(index) + np.arange(len(ring))
+        quads = [ring, np.roll(ring, -1), np.roll(beyond, -1), beyond]
+        faces.append(np.column_stack([np.full(len(ring), 4), *quads]).ravel())
+        index = np.append(index, ring)
+        across.append(side * places[ring] / radius[ring, np.newaxis])
+    soft = pv.PolyData(places[index], np.concatenate(faces))
+    soft[RGB] = np.column_stack([colors[index], np.where(np.arange(len(index)) < count, 255, 0)])
+    soft[RGB] = soft[RGB].astype(np.uint8)
+    soft.GetFieldData().ShallowCopy(key.GetFieldData())
+    return soft, np.concatenate(across)
 
 
 def band_share(size: tuple[int, int]) -> float:

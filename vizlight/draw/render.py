@@ -61,6 +61,8 @@ IMAGES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
 #: Distance by which lines are drawn nearer to the eye than a surface on which they lie, as a share
 #: of the size of what is drawn: enough for triangles not to hide the lines between them.
 LIFT = 3e-3
+#: Width of the column of a bar beside several panels, in that of a panel.
+BAR_COLUMN = 0.3
 #: Width of a key, as a share of the shorter side of the picture.
 KEY_SIZE = 0.15
 
@@ -210,9 +212,13 @@ def make_plotter(
         camera = camera_on(meshes, aspect=pixels[0] * rows / (pixels[1] * columns))
     ink = ink_on(back)
     with window_class(choose_backend(backend)):
+        # A bar beside several panels has a column of its own.
+        beside = bool(bar) and len(shown) > 1
         plotter = pv.Plotter(
-            off_screen=True, shape=(rows, columns), window_size=pixels, border=False
-        )
+            off_screen=True, window_size=pixels, border=False, shape=(rows, columns + beside),
+            col_weights=[1.0] * columns + [BAR_COLUMN] * beside,
+            groups=[(slice(None), columns)] if beside else None,
+        )  # fmt: skip
     if anti_aliasing == "auto":
         anti_aliasing = "ssaa" if any(map(has_lines_only, meshes)) else "msaa"
     if anti_aliasing == "ssaa" and len(shown) > 1 and not SUPERSAMPLES_PARTS:
@@ -234,6 +240,7 @@ def make_plotter(
                 text = plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
                 # VTK sets it so near to the edge that letters touch it.
                 text.GetTextProperty().SetLineOffset(8)
+                text.GetTextProperty().SetLineSpacing(1.3)
             # A copy for each panel: the clipping planes fit what it shows, and the caller's camera
             # stays as it was.
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
@@ -241,9 +248,15 @@ def make_plotter(
         if key is not None:
             plotter.vizlight.show_key(key, size=KEY_SIZE, color=ink)
         if bar:
-            scalar_bar = plotter.add_scalar_bar(  # type: ignore[call-arg]
-                title=bar, color=ink, n_labels=3, fmt="%.1f", vertical=True, height=0.7, width=0.1,
-                position_x=0.82, position_y=0.12,
+            mapper = plotter.mapper
+            width, left = 0.1, 0.82
+            if beside:
+                plotter.subplot(0, columns)
+                plotter.background_color = back
+                width, left = 0.1 / BAR_COLUMN, 0.2
+            scalar_bar = plotter.add_scalar_bar(
+                title=f"{bar}\n", mapper=mapper, color=ink, n_labels=3, fmt="%.1f", vertical=True,
+                height=0.7, width=width, position_x=left, position_y=0.12,
             )  # fmt: skip
             if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
                 name_no_data(scalar_bar)

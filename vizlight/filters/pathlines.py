@@ -28,7 +28,7 @@ from vizlight.shading.options import Bundle, LightOptions
 Kind = Literal["pathlines", "streaklines"]
 #: Largest number of points of a streak, and of steps between two times of a streak. Both bound the
 #: work, which grows with the product: particles in a vortex never leave.
-MOST, MOST_STEPS = 64, 100
+MOST, MOST_STEPS = 256, 100
 #: Name of the point array of times.
 TIMES = "Time"
 
@@ -146,7 +146,7 @@ def pathlines(
     are linear in time between two steps: the error is of order 2 in the time between steps. Plane
     grids and volumes are meant: on a curved surface particles leave it at once. A line ends less
     than a step before the boundary. Where a flow pulls a streak apart, particles that left one
-    after the other are joined by a chord. A streak has at most 64 points at a time, and is carried
+    after the other are joined by a chord. A streak has at most 256 points at a time, and is carried
     in at most 100 steps between two times, with a warning if these are longer than ``step``.
 
     VTK's vtkParticlePathFilter and vtkStreaklineFilter (9.7) are of order 1 in the time between
