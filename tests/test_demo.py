@@ -8,7 +8,10 @@ from vizlight import demo
 
 @pytest.fixture(scope="module")
 def made():
-    return demo.light_winds()
+    """Return the demo with fewer lines than it draws."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(demo, "SPACING", 0.3)
+        return demo.light_winds()
 
 
 def test_errors_of_the_table(made):

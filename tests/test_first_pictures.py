@@ -120,6 +120,7 @@ KINDS = (
 SLOW = [pytest.param(kind, marks=pytest.mark.slow) for kind in (winds, heights)]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", [*KINDS, *SLOW], ids=lambda kind: kind.__name__)
 def test_first_picture_changes_with_data(kind, tmp_path):
     mesh = kind()

@@ -274,7 +274,7 @@ def live(scene, then=None):
     return picture.astype(int)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.opengl
 @pytest.mark.parametrize(
     ("kind", "name"), [(kind, name) for kind in PARTS for name in PARTS[kind] if name != "view"]

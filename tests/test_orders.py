@@ -10,6 +10,7 @@ import pytest
 LIMIT = 120
 
 
+@pytest.mark.slow
 def test_filters_with_an_error_give_the_same_in_any_order_of_fresh_processes(tmp_path):
     names = [*orders.CASES]
     random = np.random.default_rng()

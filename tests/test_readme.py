@@ -51,7 +51,11 @@ def named_commands(path):
 
 
 @pytest.mark.opengl
-@pytest.mark.parametrize("path", [README, PAGES / "index.rst"], ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "path",
+    [README, pytest.param(PAGES / "index.rst", marks=pytest.mark.slow)],
+    ids=lambda path: path.name,
+)
 def test_every_python_block_runs(path, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(pv, "OFF_SCREEN", True)
@@ -114,15 +118,16 @@ def test_the_command_of_the_example_runs(tmp_path, monkeypatch):
     assert (tmp_path / "lit.png").exists()
 
 
-@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
-def test_every_command_is_one(path, capsys):
-    for command in named_commands(path):
+def test_every_command_is_one(capsys):
+    described = {}
+    for command in sorted({name for path in DOCUMENTS for name in named_commands(path)}):
         name, *words = shlex.split(command.partition("|")[0])
-        assert cli.main([name, "--help"]) == cli.OK, command
-        described = capsys.readouterr().out
+        if name not in described:
+            assert cli.main([name, "--help"]) == cli.OK, command
+            described[name] = capsys.readouterr().out
         for word in words:
             if word.startswith("--") and word != "--help":
-                assert f"{word.partition('=')[0]} " in described, command
+                assert f"{word.partition('=')[0]} " in described[name], command
 
 
 def test_readme_and_guide_are_short():

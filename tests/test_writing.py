@@ -123,6 +123,7 @@ def test_a_symbolic_link_stays_and_its_file_is_replaced(tmp_path):
     assert [p.name for p in path.parent.iterdir()] == ["a.vtp"]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="space cannot be reserved")
 @pytest.mark.parametrize("suffix", [".vtp", ".vtk", ".vtu"])
 def test_the_limit_of_file_sizes_is_seen_before_writing(suffix, tmp_path):

@@ -256,7 +256,6 @@ def test_what_is_shown_is_told(volume, done, run):
     cells.cell_data["region"], cells.cell_data["temperature"] = np.arange(12), np.arange(12.0)
     cells.save("cells.vti")
     for words, told in (
-        ("flow.vti", "streamlines of V in the colours of their speed (heading: streamlines)"),
         ("flow.vti --array r", "slices of r through the middle"),
         ("flat.vti", "relief of height (relief: sheet)"),
         ("flat.vti --for value", "height in colours (none: sheet)"),

@@ -68,6 +68,7 @@ def test_the_picture_is_that_of_the_whole(parts, view, tmp_path, done):
         assert max(np.ptp(rows) / 100, np.ptp(columns) / 150) > 0.85
 
 
+@pytest.mark.slow
 def test_processes_write_the_same_bytes(parts, tmp_path, done):
     for name, more in (("one", ()), ("two", ("--workers", "2"))):
         lit = ("light", *parts, *CONTOUR, "-o", f"{name}.pvtp", *more)
@@ -134,7 +135,7 @@ def shell(tmp_path, monkeypatch):
 
 @pytest.mark.opengl
 def test_the_page_is_private_and_opened(shell, done):
-    out = done("view", "ball.vtp", "--tangents", "V", "--light", "-1,-2,3")
+    out = done("view", "ball.vtp", "--scalars", "height", "--light", "-1,-2,3")
     page = Path(re.search(r"^page +(.+)$", out, re.MULTILINE)[1])
     assert page.name == "ball.html"
     assert shell == [page.as_uri()]
@@ -152,7 +153,7 @@ def test_the_page_is_private_and_opened(shell, done):
 def test_the_page_is_kept_and_no_browser_is_opened(shell, tmp_path, done):
     out = done("view ball.vtp --scalars height -o kept.html --no-browser")
     assert "page     kept.html" in out
-    assert 'export_html("ball.html"' in done("view ball.vtp --script")
+    assert 'export_html("ball.html"' in done("view ball.vtp --scalars height --script")
     assert shell == []
     assert sorted(path.name for path in tmp_path.iterdir()) == ["ball.vtp", "kept.html"]
 
@@ -160,7 +161,17 @@ def test_the_page_is_kept_and_no_browser_is_opened(shell, tmp_path, done):
 @pytest.mark.opengl
 def test_the_page_copies_the_command(shell, done):
     """The words of the command stand in the page, and light the file alike."""
-    options = ["--tangents", "V", "--conditioned", "--clip", "z:0.3", "--exponent", "2"]
+    options = [
+        "--scalars",
+        "height",
+        "--tangents",
+        "V",
+        "--conditioned",
+        "--clip",
+        "z:0.3",
+        "--exponent",
+        "2",
+    ]
     done("view", "ball.vtp", *options, "-o", "kept.html", "--no-browser")
     recipe = json.loads(re.search(r'"recipe": (\{.*?\}), "name"', Path("kept.html").read_text())[1])
     assert recipe["file"] == "ball.vtp"
@@ -174,6 +185,6 @@ def test_the_page_copies_the_command(shell, done):
 @pytest.mark.opengl
 def test_without_a_browser_the_path_is_told(shell, run, monkeypatch):
     monkeypatch.setattr(webbrowser, "open", lambda url: False)
-    code, _, err = run("view", "ball.vtp", "-o", "kept.html")
+    code, _, err = run("view ball.vtp --scalars height -o kept.html")
     assert code == 0
     assert err == "vizlight: no browser was found; open 'kept.html' in one\n"

@@ -91,6 +91,7 @@ POINTS = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.filterwarnings("ignore:.* of the edges are sharper", "ignore:1 of")
 @pytest.mark.parametrize("case", POINTS)
 def test_light_at_points_is_that_of_the_filter(plotter, case):
@@ -157,6 +158,7 @@ LIT = {
 }
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.filterwarnings("ignore:.* points could not be lit")
 @pytest.mark.parametrize("kind", LIT)
 def test_light_of_filters_is_lit_again_from_its_record(plotter, kind):
@@ -319,6 +321,7 @@ REMOVALS = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("light", ["points", "fragments"])
 @pytest.mark.parametrize("how", REMOVALS)
 def test_nothing_stays_behind(how, light):

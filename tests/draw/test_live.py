@@ -110,6 +110,7 @@ def test_within_four_of_the_light_at_points(shape, model, scene, claim):
     claim(np.abs(fragments - points).max(), 4)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("shape", ["surface", "conditioned", "lines"])
 def test_colours_of_data_within_four(shape):
     make, options = SHAPES[shape]

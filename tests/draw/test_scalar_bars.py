@@ -35,6 +35,7 @@ def far(heights):
     return 8e5 + 1000 * heights
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("values", [holed, far, lambda heights: -1e-7 * (heights + 1)])
 @pytest.mark.parametrize("size", [(900, 600), (400, 300)])
 @pytest.mark.parametrize("vertical", [False, True])

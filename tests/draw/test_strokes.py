@@ -31,6 +31,7 @@ def shot(mesh, camera, **options):
     return np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("light", ["auto", "points"])
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize("along", [(1, 0), (0, 1), (1, 1), (2, -1)])
@@ -134,6 +135,7 @@ def crossing(distance, *, light, ground="white", halo=None, first=0):
     return np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("ground", ["white", "black"])
 @pytest.mark.parametrize("light", ["fragments", "points"])
 def test_the_line_behind_is_cut_beside_the_one_in_front(light, ground):
@@ -315,6 +317,7 @@ def shown(line, lights, *, parallel, **options):
 LAMPS = [Light(direction=(1, 0.4, 0.6)), Light.headlight(intensity=0.4)]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("option", [{}, {"scalars": "height"}, {"tangents": "course"}])
 @pytest.mark.parametrize("parallel", [False, True])
 def test_light_at_three_places_of_segments_is_that_in_each_fragment(option, parallel):
@@ -397,6 +400,7 @@ def test_widths_hold_under_supersampling(light, halo):
     assert width == pytest.approx(6, abs=0.3)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("light", ["fragments", "points"])
 @pytest.mark.parametrize("halo", [None, False, 1.0])
 @pytest.mark.parametrize("option", [{"line_width": 20}, {"line_diameter": 0.2}])

@@ -38,6 +38,7 @@ def test_thin_lines_5_percent_off_fail(factor):
         testing.assert_same_picture(lines(200 * factor), lines())
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.opengl
 @pytest.mark.parametrize("background", ["white", "black", "gray"])
 @pytest.mark.parametrize("factor", [0.95, 1.05])
@@ -133,6 +134,7 @@ def test_a_lamp_5_degrees_elsewhere_fails():
         testing.assert_same_picture(ball("egl", "msaa", turned=5), ball("egl", "msaa"))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.opengl
 @pytest.mark.parametrize("draw", ["pyvista", "vizlight"])
 @pytest.mark.parametrize("size", [(300, 200), (600, 400)])

@@ -33,12 +33,12 @@ QUICK = vizlight.Bundle(grid=24)
 def skylit():
     """Return lines whose colour comes by their material, under the sky."""
     scene = SCENE.replace(material=shiny(color=(1.0, 0.3, 0.2)))
-    return vizlight.illuminate(lines(), scene, bundle=QUICK, occlusion="sky", components=True)
+    return vizlight.illuminate(lines(150), scene, bundle=QUICK, occlusion="sky", components=True)
 
 
 def test_the_shares_multiply_each_light_and_the_ambient_term(skylit):
     """Against lighting by one light at a time, without a bundle."""
-    mesh, lit = lines(), skylit
+    mesh, lit = lines(150), skylit
     share, open_ = np.asarray(lit["transmittance"]), np.asarray(lit["sky"])
     assert share.shape == (mesh.n_points, 2)
     assert share.min() >= 0
@@ -57,7 +57,7 @@ def test_the_shares_multiply_each_light_and_the_ambient_term(skylit):
 
 
 def test_points_deep_inside_are_darker_and_the_outermost_are_not():
-    mesh = lines(2000)
+    mesh = lines(1500)
     lit = vizlight.illuminate(mesh, SCENE.replace(lights=[FAR]), bundle=QUICK, occlusion="sky")
     height, share = np.asarray(mesh.points)[:, 2], np.asarray(lit["transmittance"])
     assert share[height > 0.8].mean() > 0.9
@@ -143,14 +143,14 @@ def in_one_light(mesh):
 
 @pytest.fixture(scope="module")
 def unmoved():
-    return in_one_light(lines(60))
+    return in_one_light(lines(24))
 
 
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
 @pytest.mark.parametrize(("scale", "far"), [(1e-20, 0.0), (1e12, 0.0), (1.0, 1e4)])
 def test_neither_the_unit_nor_the_place_matters(kind, scale, far, unmoved):
-    moved = lines(60)
+    moved = lines(24)
     moved.points = (np.asarray(moved.points, np.float64) * scale + far).astype(kind)
     found, other = unmoved, in_one_light(moved)
     off = 2e-2 if far and kind is np.float32 else 2e-3

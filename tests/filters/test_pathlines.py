@@ -202,6 +202,7 @@ def test_particles_on_a_map_go_metres_of_the_place(tmp_path, unit, size):
     np.testing.assert_allclose(last["u,v"] * size, np.tile([10, 5, 0], (last.n_points, 1)), 1e-6)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("axis", [0, 1, 2])
 @pytest.mark.parametrize("kind", ["image", "rectilinear", "structured"])
 def test_a_rotation_in_any_plane_gives_circles(axis, kind):

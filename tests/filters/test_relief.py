@@ -83,6 +83,7 @@ def test_a_turned_grid_has_its_shadow_turned(kind, angle):
         np.testing.assert_allclose(other[name], one[name], atol=2e-6)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("angle", [1e-5, 0.2, 89.9])
 @pytest.mark.parametrize("kind", ["ImageData", "StructuredGrid"])
 @pytest.mark.parametrize(
@@ -234,6 +235,7 @@ def shapes():
     }
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("kind", shapes())
 def test_shadows_of_the_default_depth_are_as_large_as_hard_ones(kind):
     grid, options = shapes()[kind]

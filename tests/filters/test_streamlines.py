@@ -230,6 +230,7 @@ def test_a_mesh_that_was_lit_before():
     assert "diffuse" not in lines.point_data
 
 
+@pytest.mark.slow
 def test_carotid_artery():
     """Measured flow with walls: every point of a line is lit."""
     if not Path(os.environ.get("PYVISTA_DATA", "")).is_dir() or "PYVISTA_DATA" not in os.environ:

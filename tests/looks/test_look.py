@@ -296,16 +296,14 @@ def test_options_win_over_the_rule():
     mesh = volume(V=turning, T=edge)
     assert vizlight.look(mesh, array="T", size=SIZE).shown == "isosurface"
     assert vizlight.look(mesh, "shape", size=SIZE).question == "shape"
-    assert vizlight.look(mesh, "flow", spacing=2.0, size=SIZE).shown == "streamlines"
-    on = vizlight.look(mesh, contour="T", level=0.5, size=SIZE)
-    assert (on.question, on.array) == ("direction", "V")
+    assert vizlight.look(mesh, "flow", seeds=9, size=SIZE).shown == "streamlines"
     # Without a level the isosurface is where the values are steepest, which a note tells.
     steepest, _ = levels.best_level(mesh, "T")
-    without_level = vizlight.look(mesh, contour="T", size=SIZE)
+    without_level = vizlight.look(volume(T=edge), contour="T", size=SIZE)
     np.testing.assert_allclose(without_level.mesh["T"], steepest, rtol=1e-5)
     note = f"the level of T is {levels.number(steepest)}, where it is steepest"
     assert note in without_level.notes
-    look = vizlight.look(mesh, view="x", size=SIZE, scene="shape")
+    look = vizlight.look(mesh, array="T", view="x", size=SIZE, scene="shape")
     toward = np.subtract(look.view.position, look.view.focal_point)
     np.testing.assert_allclose(toward / np.linalg.norm(toward), (1, 0, 0), atol=1e-9)
     assert look.scene.lights == vizlight.presets.shape().lights

@@ -586,6 +586,7 @@ STATED = {
 }
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", STATED)
 def test_the_share_of_the_places_within_the_error_is_the_one_stated(name, seed, monkeypatch, claim):
     make, options, most, largest = STATED[name]

@@ -105,6 +105,7 @@ SHADOWS = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", SHADOWS)
 def test_every_shadow_of_every_light(name, monkeypatch):
     make, options = SHADOWS[name]

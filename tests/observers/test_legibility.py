@@ -43,7 +43,7 @@ def eddies(count):
 
 
 def test_finer_eddies_are_read_worse_until_chance():
-    found = [read(eddies(k), presets.direction(), tangents="v", exponent=2) for k in (2, 8, 32, 80)]
+    found = [read(eddies(k), presets.direction(), tangents="v", exponent=2) for k in (2, 16, 80)]
     bits = [one.direction.bits for one in found]
     medians = [one.direction.median for one in found]
     assert bits == sorted(bits, reverse=True)
@@ -95,6 +95,7 @@ def test_an_empty_picture_says_chance_and_why_of_all_questions():
         assert figure.told == figure.wrongly == figure.chance
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("tilt", [0, 15, 30, 45, 60, 75])
 def test_a_plane_in_constant_light_has_no_shape(tilt):
     a = np.radians(tilt)
@@ -157,6 +158,7 @@ def test_a_diverging_map_is_read_under_a_lamp_and_a_gray_one_is_not():
     assert gray.bits < 0.6 * belt.bits
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "options",
     [{"occlusion": "sky"}, {"feature_angle": 30.0}, {"feature_angle": "auto"}],
@@ -167,6 +169,7 @@ def test_pictures_with_sky_and_sharp_edges_are_read(options):
     assert found.median < 30
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("angle", ["auto", 30.0, None])
 def test_a_picture_of_sharp_edges_is_read_like_its_plotter(angle):
     """Flat sides of a box have one normal each; smooth ones none that is of a side."""
@@ -186,6 +189,7 @@ def test_a_picture_of_sharp_edges_is_read_like_its_plotter(angle):
         assert vizlight.legibility(box, **read, feature_angle=None).shape.bits < whole.bits / 2
 
 
+@pytest.mark.slow
 def test_lines_of_a_diameter_are_as_wide_in_any_picture():
     lines = straws(60)
     picture, camera = shot(lines.tube(radius=0.02), color="red", lighting=False)
@@ -195,6 +199,7 @@ def test_lines_of_a_diameter_are_as_wide_in_any_picture():
     assert thin.pixels < wide.pixels / 2
 
 
+@pytest.mark.slow
 def test_pictures_with_bundles_are_read():
     fixed = Scene(lights=Light(direction=(0, 0.3, 1)), material=MATTE)
     alone, inside = (read(straws(), fixed, bundle=b, line_width=3).slope for b in (False, True))
@@ -255,17 +260,6 @@ def test_a_whole_plotter_is_read():
     plotter.close()
     assert half.pixels < 0.7 * bare.pixels
     assert abs(half.direction.median - bare.direction.median) < 4
-
-
-def test_plain_colors_of_pyvista_in_a_plotter_are_read():
-    mesh = sheet()
-    plotter = pv.Plotter(off_screen=True, window_size=(480, 320))
-    plotter.add_mesh(mesh, scalars="height", cmap="viridis", lighting=False)
-    plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
-    found = plotter.vizlight.legibility(samples=1024)
-    plotter.close()
-    assert found.value.median < 0.05
-    assert found.shape is None
 
 
 def test_speed_is_ranked_by_lightness():
@@ -386,6 +380,7 @@ test_bad_input = refusals(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.opengl
 def test_a_relief_with_cast_shadows_is_read():
     """Its record has an attached shadow, which needs no tangents."""

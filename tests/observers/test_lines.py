@@ -85,6 +85,7 @@ def heads(along):
     return np.where(along > 0.7, 0.2 * (1.05 - along), 0.01)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("radius", "color"),
     [(taper, black), (lambda t: taper(1 - t), black), (heads, black), (even, lambda t: 0.9 * t)],
@@ -255,6 +256,7 @@ def test_finer_rings_are_read_worse_until_chance():
     assert "too fine" in found[-1].reason
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("geom", "told"),
     [(None, 1), (pv.Cone(), 1), (pv.Cylinder(radius=0.1), 0), (pv.Line((-0.5, 0, 0)), 0)],

@@ -163,7 +163,7 @@ def test_no_process_listens_and_a_script_needs_no_guard(balls):
 
 def test_executors_light_the_same(balls):
     expected = pieces.light(str(balls / "ball*.vtp"), PLAIN, ghost=0, out=balls / "one.pvtp")
-    with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
         for work in (pool, pool.map):
             assert same(light(balls, map=work), expected)
 

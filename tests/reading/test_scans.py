@@ -60,6 +60,7 @@ def assert_placed(mesh, affine):
     np.testing.assert_allclose(np.asarray(mesh.points)[order], places, atol=1e-4)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize(
     ("space", "signs"),

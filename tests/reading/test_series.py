@@ -68,6 +68,7 @@ def ensight(folder):
     return path
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("make", [pvd, netcdf, ensight])
 @pytest.mark.parametrize(
     ("asked", "time"),

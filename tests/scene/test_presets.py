@@ -30,6 +30,7 @@ def rays(random, count=COUNT):
     return unit(random.standard_normal((count, 3)))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", PRESETS)
 def test_no_tangent_and_no_normal_is_brighter_than_white(name, random):
     """By the law itself, and by the engine; the brightest normal is white to 1 in 1000."""

@@ -280,6 +280,7 @@ def test_curved_cells_beside_others_face_outward_and_keep_the_active_array(kind,
     assert all(outward)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("block", [160, 1500, 1 << 20])
 def test_the_surface_of_many_cells_is_found_by_blocks(block, monkeypatch):
     monkeypatch.setattr(hull, "BLOCK", block)

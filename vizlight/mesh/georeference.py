@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight import _check
-from vizlight._types import Array, Foreign
+from vizlight._types import Array, Foreign, Raw
 from vizlight.mesh import blocks, meaning, sections
 from vizlight.mesh.blocks import DataSetT
 

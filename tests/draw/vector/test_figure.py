@@ -204,6 +204,7 @@ def test_details_that_are_too_many_become_pixels_with_a_note(plotter, tmp_path, 
     assert "data:image/png" in text or "<path" in text
 
 
+@pytest.mark.slow
 def test_pixels_that_do_not_fit_as_png_are_jpeg(plotter, tmp_path, monkeypatch):
     monkeypatch.setattr(figure, "LARGEST", 40_000)
     rough = np.random.default_rng(3).normal(size=(300, 300, 1))

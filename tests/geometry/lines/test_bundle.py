@@ -83,6 +83,7 @@ def test_a_lamp_in_and_out_of_a_ball(lamp):
     assert ratio.std() < (0.1 if distance.min() > 1 else 0.25)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("gap", [0.55, 0.8, 1.5, 4.0])
 def test_a_lamp_beside_a_line_sees_the_width_of_a_cylinder(gap):
     """A cylinder at a distance r of its axis hides 2 asin(d / 2 r) of the angle around the lamp."""

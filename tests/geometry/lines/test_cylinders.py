@@ -64,6 +64,7 @@ def test_a_ring_hides_its_far_side_and_not_the_point_itself():
     assert cylinders.missed(lines, behind, 0.02, (1, 0, 0), False, np.ones(2)) == (0, 0)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("kind", "lamp"),
     [("isotropic", OUTSIDE), ("parallel", ALONG), ("layered", FAR), ("isotropic", INSIDE)],

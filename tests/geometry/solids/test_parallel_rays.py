@@ -38,6 +38,7 @@ def test_lines_through_vertices_and_edges_enter_as_often_as_they_leave(way, rand
     assert np.all(count[-200:] == 2)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("way", WAYS[3:5])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_every_hit_is_found(way, dtype, random):

@@ -34,6 +34,7 @@ CLOSED_FORMS = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", CLOSED_FORMS)
 def test_volume_against_closed_forms(name):
     solid, volume = CLOSED_FORMS[name]

@@ -55,6 +55,7 @@ CLOSED_FORMS = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", CLOSED_FORMS)
 def test_volume_and_area_against_closed_forms(name, seed, claim):
     solid, volume, area = CLOSED_FORMS[name]
@@ -71,6 +72,7 @@ def test_volume_and_area_against_closed_forms(name, seed, claim):
     assert np.all(missing[-1] < missing[0] / 6)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", CLOSED_FORMS)
 def test_bands_are_right_on_the_exact_surface(name, random):
     solid, _, _ = CLOSED_FORMS[name]
@@ -296,6 +298,7 @@ def test_thin_walls_and_gaps_between_planes_are_exact(wall):
     assert len(apart.triangles) == 24
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("wall", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("offset", [0, 0.5])
 def test_thin_tubes_and_narrow_bores(wall, offset):
