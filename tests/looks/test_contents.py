@@ -324,6 +324,14 @@ def test_arrays_that_tell_the_place_are_no_vectors_and_come_last():
     assert [array.name for array in Contents(grid).arrays] == ["height"]
 
 
+def test_complex_numbers_are_named():
+    mesh = pv.Plane(i_resolution=9, j_resolution=9)
+    assert not Contents(mesh).words_on_complex()
+    mesh["psi"] = mesh.points[:, 0] + 1j * mesh.points[:, 1]
+    (note,) = vizlight.look(mesh).notes
+    assert note == "psi: complex numbers are not shown; take numpy.abs or numpy.angle"
+
+
 def test_rounding_is_no_datum():
     mesh = pv.ParametricTorus(u_res=30, v_res=30, w_res=30)
     x, y, _ = np.asarray(mesh.points, dtype=np.float64).T

@@ -269,6 +269,12 @@ class Contents:
         words += [f"{name}, up to {size:.1g}, is taken for rounding of 0" for name, size in noise]
         return ", ".join(words)
 
+    def words_on_complex(self) -> str:
+        """Return which arrays hold complex numbers, which have no place on a bar; empty if none."""
+        data = (*self.mesh.point_data.items(), *self.mesh.cell_data.items())
+        names = ", ".join(name for name, rows in data if np.iscomplexobj(rows))
+        return names and f"{names}: complex numbers are not shown; take numpy.abs or numpy.angle"
+
     def first(self, *roles: Role) -> Named | None:
         """Return the best array of some roles, None if no array has one."""
         return next((array for array in self.arrays if array.role in roles), None)

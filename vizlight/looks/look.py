@@ -711,7 +711,9 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         notes += [step.note] if step.note else []
     if contents.mesh is not step.run():
         contents = replace(contents, mesh=step.run())
-    words = [contents.words_on_none(), contents.words_on_rounding()]
+    words = [
+        contents.words_on_none(), contents.words_on_rounding(), contents.words_on_complex(),
+    ]  # fmt: skip
     notes += [text for text in words if text]
     return step, contents, notes
 
