@@ -9,7 +9,7 @@ import pyvista as pv
 
 import vizlight
 from vizlight import files
-from vizlight.mesh import meaning, polylines
+from vizlight.mesh import georeference, meaning, polylines
 
 VIEW = vizlight.View(direction=(0, 0, 1))
 
@@ -151,6 +151,7 @@ def test_tracts_say_in_which_frame_they_are():
     pytest.importorskip("nibabel")
     mesh = vizlight.read(tract("standard.trk"))
     assert meaning.ways(mesh) == ("left, right", "back, front", "down, up")
+    assert georeference.unit_of(mesh) == "millimetre"
     mesh.point_data.clear()
     mesh.cell_data.clear()
     bar = vizlight.look(mesh).drawing.keys[0]["cmap"].run()

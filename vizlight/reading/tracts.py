@@ -13,6 +13,7 @@ import pyvista as pv
 from vizlight import _check, _supervise
 from vizlight._types import Array, Foreign, Indices, Raw
 from vizlight.mesh import meaning, polylines
+from vizlight.mesh.georeference import UNIT
 from vizlight.reading import (
     brains,
     file_parts,
@@ -141,7 +142,8 @@ def _polylines(
                 odd.append(f"{name!r} ({len(array)} rows of {array.dtype} for {count})")
     if odd:
         _check.warn(f"file: data beside the lines are left out: {', '.join(odd)}")
-    # By the header of the file, in mm.
+    # By the header of the file.
+    mesh.field_data[UNIT] = ["millimetre"]
     meaning.attach(mesh, meaning.Meaning(axes=[*meaning.ANATOMY]))
     return mesh
 
