@@ -160,6 +160,19 @@ def test_flow_that_is_asked_for_has_the_colours_of_its_speed_and_its_light_in_fi
     assert np.max(look.mesh["luminance"]) < 0.95
 
 
+def test_zones_of_a_flow_have_no_walls_where_they_meet():
+    zones = [
+        pv.ImageData(dimensions=(9, 9, 5), spacing=(0.1,) * 3, origin=(0, 0, z)) for z in (0, 0.4)
+    ]
+    for zone in zones:
+        zone["wind"] = zone.points + 1.0
+    blocks = pv.MultiBlock([zone.cast_to_unstructured_grid() for zone in zones])
+    look = vizlight.look(blocks, size=(240, 160))
+    (hull,) = (layer.mesh.run() for layer in look.drawing.layers if layer.mesh.name == "hull")
+    assert hull.area == pytest.approx(6 * 0.8**2)
+    assert look.mesh.array_names
+
+
 def test_short_lines_are_left_out_of_volumes_and_counted_where_some_are_long():
     noisy = vizlight.look(volume(0), "flow", seeds=60)
     assert noisy.drawing.words == "streamlines of V in the colours of their speed"

@@ -29,6 +29,7 @@ def cells(*numbers, text=True):
 
 WHOLE = {
     "a.vtk": FIELD,
+    "line.vtk": FIELD.replace(b"ASCII", b"\nASCII", 1),
     "name.vtk": FIELD.replace(b"F 1\n", b"F 2\n") + b"Info 1 4 float\n1 nan inf 4\n",
     "three.vtk": cells(3, 0, 1, 2, 3, 1, 2, 3),
     "mixed.vtk": cells(3, 0, 1, 2, 4, 0, 1, 3, 2),

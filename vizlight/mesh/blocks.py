@@ -141,7 +141,7 @@ def _has_data(block: pv.DataSet) -> bool:
 
 
 def _without_bounds(part: pv.MultiBlock, whole: pv.MultiBlock) -> pv.MultiBlock:
-    """Return the blocks of a part of which less than half of the points are those of another."""
+    """Return the blocks of a part without those that lie mostly at the points of another."""
     every = [np.asarray(block.points, np.float32) for block in [*whole, *part]]
     numbers = place_numbers(np.concatenate(every))
     of_blocks = np.split(numbers, np.cumsum([len(points) for points in every])[:-1])

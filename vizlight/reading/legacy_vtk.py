@@ -22,6 +22,8 @@ from vizlight.vtk.cells import cell_arrays, connectivity, points_of_type
 
 #: Bytes in which the lines before the data stand.
 _HEAD = 4096
+#: Version and title, and the word for text after them, before which empty lines may stand.
+_TEXT = re.compile(rb"[^\n]*\n[^\n]*\n\s*(?i:ASCII)")
 #: Version in the first line, and words before cells that are rows until version 5.
 _VERSION = re.compile(rb"# vtk DataFile Version\s+(\d+)\.\d")
 _CELLS = (b"VERTICES ", b"LINES ", b"POLYGONS ", b"TRIANGLE_STRIPS ", b"CELLS ")
@@ -72,9 +74,9 @@ def missing_part(file: BinaryIO) -> str:
     file : file
         A legacy file of VTK, which is open.
     """
-    lines = file.read(_HEAD).splitlines()
-    is_text = b"ASCII" in b"".join(lines[2:3]).upper()
-    version = _VERSION.match(b"".join(lines[:1]))
+    head = file.read(_HEAD)
+    is_text = _TEXT.match(head) is not None
+    version = _VERSION.match(head)
     # Since version 5 cells are arrays of ends and of corners.
     keywords = _CELLS if version is None or int(version[1]) < 5 else ()
     with file_parts.mapped(file) as data:
@@ -279,9 +281,11 @@ def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
         if block[1] and b"\n\n" not in block[2]:
             return "its last block is not whole"
         file.seek(0)
-        # The third line says whether numbers are text; binary files are not looked at.
-        if b"ASCII" not in [next(file, b"") for _ in range(3)][2].upper():
+        head = _TEXT.match(file.read(_HEAD))
+        # Binary files are not looked at.
+        if head is None:
             return ""
+        file.seek(head.end())
         file_parts.warn_of_last_line(path, block[2])
         # Lines of keywords begin with a letter, as does "nan", which is a number.
         count = sum(

@@ -33,6 +33,7 @@ from vizlight.mesh import meaning, records
 from vizlight.mesh.strokes import FLAT, TUBE
 from vizlight.model import kernels
 from vizlight.vtk.polylines import has_lines_only
+from vizlight.vtk.topology import place_numbers
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Foreign, Keywords
@@ -287,7 +288,7 @@ def flow(case: Case) -> Drawing:
     if array.of_cells:
         mesh = Step("averaged", ".cell_data_to_point_data", mesh)
     keywords: Keywords = {"tangents": array.name} | dict(case.wishes.light)
-    mesh = _where_it_flows(mesh, array.name)
+    mesh = _where_it_flows(_in_one_piece(mesh), array.name)
     on = mesh
     if "contour" in case.wishes.part:
         on = keywords["surface"] = case.wishes.isosurface(mesh)
@@ -353,6 +354,16 @@ def _colors_of_flow(case: Case, mesh: Step, lines: Step) -> tuple[Keywords, str,
     speeds = np.asarray(lines.run()[speed], dtype=np.float64)
     colors, note = case.ranged(speeds, "speed", case.map_on_ground, lengths=True)
     return {"scalars": speed, **colors}, note, [bar_of_lengths(mesh, array.name, colors, SENSE)]
+
+
+def _in_one_piece(mesh: Step) -> Step:
+    """Return the step that joins blocks of a grid where they meet, which else have walls there."""
+    grid = mesh.run()
+    if not isinstance(grid, pv.UnstructuredGrid):
+        return mesh
+    if len(np.unique(place_numbers(np.asarray(grid.points)))) == grid.n_points:
+        return mesh
+    return Step("whole", ".clean", mesh, produce_merge_map=False)
 
 
 def _where_it_flows(mesh: Step, name: str) -> Step:
