@@ -71,8 +71,9 @@ speed = ListedColormap(colormaps["YlGnBu"](0.8 * np.arange(256) / 255), name="vi
 colormaps.register(speed, force=True)
 #: Maps of a look that run in lightness too, as most printed ones, yet not so far that light on them
 #: is taken for another value: violet over green to yellow on surfaces, indigo over crimson to
-#: yellow for temperatures, around all hues for directions, and the parts of viridis and of these that stand out from a white and
-#: from a dark ground, with large values standing out most, and hot ones red.
+#: yellow for temperatures, around all hues for directions, and the parts of viridis and of these
+#: that stand out from a white and from a dark ground, with large values standing out most, and hot
+#: ones red.
 _VIOLET_TO_YELLOW = ["#5a4fb0", "#3f7fc9", "#35a7b8", "#4fc087", "#a5d24a", "#f2dc3c"]
 _INDIGO_TO_YELLOW = ["#4a45a6", "#7d40a8", "#bb4380", "#e3624d", "#f4993c", "#f9df74"]
 _ALL_AROUND = ["#3b6fb6", "#2fa5a0", "#6db33f", "#e0b030", "#e0603f", "#a34fa3", "#3b6fb6"]
