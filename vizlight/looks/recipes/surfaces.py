@@ -380,7 +380,7 @@ def _is_of_single_points(case: Case, array: Named) -> bool:
     if array.of_cells or array.role != "values" or len(sizes) != 2:
         return False
     known = np.isfinite(np.asarray(mesh.point_data[array.name])).reshape(sizes)
-    seen = scipy.ndimage.binary_opening(known, np.ones((2, 2)))
+    seen = scipy.ndimage.binary_opening(known, np.ones((2, 2), dtype=np.bool_))
     return bool(seen.sum() < known.sum() / 2)
 
 
