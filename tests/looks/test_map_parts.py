@@ -377,3 +377,12 @@ def test_values_of_single_points_of_a_map_are_seen():
     grey = np.ptp(picture, axis=2) < 5
     share = drawn.sum() / (drawn.sum() + (grey & (picture[..., 0] < 240)).sum())
     assert share == pytest.approx(known.sum() / (15 * 20), rel=0.2)
+
+
+def test_heights_of_stations_are_on_a_map_with_coasts():
+    grid = chart(60, 40, name="elevation")
+    stations = pv.PolyData(grid.points[::7])
+    stations["elevation"] = grid["elevation"][::7]
+    look = vizlight.look(cartography.in_degrees(stations), size=SIZE)
+    assert look.array == "elevation"
+    assert "coasts" in paths(look)
