@@ -1,5 +1,6 @@
 """What a look draws on and around maps: coasts and frames, where they are and where not."""
 
+import contextlib
 import re
 
 import numpy as np
@@ -361,3 +362,27 @@ def test_coasts_that_are_too_coarse_are_said_to_be_so(west, south, side, keyword
     grid = cartography.in_degrees(grid)
     notes = vizlight.look(grid, size=SIZE, **keywords).notes
     assert any("too coarse for maps under 2220 km" in note for note in notes) == said
+
+
+@pytest.mark.opengl
+def test_values_of_single_points_of_a_map_are_seen():
+    """Each has the share of the map that is nearest to its point."""
+    mesh = chart(60, 40, unit="")
+    known = np.zeros((16, 21), dtype=bool)
+    known[2:-2:3, 2:-2:3] = True
+    mesh["warmth"][~known.ravel()] = np.nan
+    with contextlib.closing(vizlight.look(mesh, size=SIZE, cmap="autumn").plotter()) as plotter:
+        picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :200]
+    drawn = (picture[..., 0] > 200) & (picture[..., 2] < 60)
+    grey = np.ptp(picture, axis=2) < 5
+    share = drawn.sum() / (drawn.sum() + (grey & (picture[..., 0] < 240)).sum())
+    assert share == pytest.approx(known.sum() / (15 * 20), rel=0.2)
+
+
+def test_heights_of_stations_are_on_a_map_with_coasts():
+    grid = chart(60, 40, name="elevation")
+    stations = pv.PolyData(grid.points[::7])
+    stations["elevation"] = grid["elevation"][::7]
+    look = vizlight.look(cartography.in_degrees(stations), size=SIZE)
+    assert look.array == "elevation"
+    assert "coasts" in paths(look)

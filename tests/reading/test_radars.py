@@ -53,7 +53,8 @@ def test_a_sweep_is_a_whole_turn_around_its_radar():
 
 def test_reflectivity_is_the_first_of_the_variables():
     file = volume()
-    others = {name: file["dbz"].assign_attrs(long_name=name) for name in ("NCP", "a", "z")}
+    names = ("NCP", "differential_reflectivity", "z")
+    others = {name: file["dbz"].assign_attrs(long_name=name) for name in names}
     file = xarray.Dataset({**others, **file.data_vars})
     assert vizlight.look(file).array == "dbz"
     renamed = file.rename(dbz="first", z="DBZHC")
@@ -77,3 +78,18 @@ def test_a_sweep_of_one_azimuth_is_a_section():
     said = meaning.of(mesh)
     assert [scale.title for scale in said.section] == ["distance", "height"]
     assert said.level == "azimuth 30°"
+
+
+def test_rays_straight_up_are_a_section_in_time():
+    file = volume(elevation=np.full(72, 90.0))
+    mesh = vizlight.read(file)
+    said = meaning.of(mesh)
+    assert [scale.title for scale in said.section] == ["time", "height"]
+    assert mesh.bounds[:4] == pytest.approx((0, 7.1, 300, 50_300), abs=0.5)
+    assert at(mesh, (3.0, 20_300, 0)) == file["dbz"].values[30, 2]
+
+
+def test_of_several_turns_the_first_is_shown():
+    mesh = vizlight.read(volume(np.tile(np.arange(5.0, 1085, 30), 2) % 360))
+    assert mesh.dimensions == (13, 4, 1)
+    assert at(mesh, (0, 50e3, 0)) == pytest.approx(volume()["dbz"].values[0, 3], abs=30)

@@ -36,6 +36,17 @@ def test_longitudes_are_a_map_with_decimal_commas(tmp_path):
     assert mesh["t (K)"].tolist() == [280, 281.5]
 
 
+@pytest.mark.parametrize(
+    ("lon", "lat"), [("decimalLongitude", "decimalLatitude"), ("GTD_LON", "GTD_LAT")]
+)
+def test_longitudes_may_have_words_before_them(lon, lat, tmp_path):
+    mesh = vizlight.read(written(tmp_path / "a.csv", f"count,{lat},{lon}\n3,50,10.5\n4,51,11\n"))
+    np.testing.assert_array_equal(mesh.points, [(10.5, 50, 0), (11, 51, 0)])
+    assert mesh.field_data["unit"][0] == "degree"
+    with pytest.raises(FileError, match="no names of places"):
+        vizlight.read(written(tmp_path / "b.csv", "balloon,flat\n1,2\n"))
+
+
 @pytest.mark.parametrize("name", ["", "Unnamed: 0"])
 def test_the_numbers_of_the_rows_of_a_data_frame_are_no_values(name, tmp_path):
     rows = "".join(f"{7 * i},{i},{i * i},0,{3 + i % 2}.5\n" for i in range(20))

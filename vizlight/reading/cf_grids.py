@@ -441,11 +441,9 @@ class _Reader:
             mesh = self._mesh()
         of_track = self.listed is not None and self.letters[self.listed.dim][0] == "t"
         is_step = (len(ticking) > 1 or self.said.time) and not (of_track or is_drawn)
-        if not is_step:
-            return mesh
-        if len(ticking) > 1:
+        if is_step and len(ticking) > 1:
             self._say_undated(mesh)
-        return series.marked(mesh, ticking, step)
+        return series.marked(mesh, ticking, step) if is_step else mesh
 
     def _clock_of_section(self, chosen: set[str]) -> tuple[str, str]:
         """Return the axis of time of values that have it and one other, and where it is drawn.

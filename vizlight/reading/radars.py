@@ -16,6 +16,8 @@ from vizlight.reading import series
 _ANGLES, _OTHERS = ("azimuth", "elevation"), ("range", "sweep_start_ray_index")
 #: Radius of the earth in which rays that air bends are straight, as a multiple of its own.
 BENT = 4 / 3
+#: Least elevation in degrees of the rays of a radar that looks up.
+ZENITH = 89.0
 #: Largest gap, in mean distances of rays, across which a sweep is closed to a circle.
 _GAP = 2.0
 
@@ -29,6 +31,8 @@ def grid(
     data: Foreign, at: Mapping[str, object], nodata: float | None, source: str
 ) -> pv.StructuredGrid:
     """Return one sweep: x east and y north of the radar, or x along the ground and y up.
+
+    Rays of a radar that looks up are beside each other by their times.
 
     Places are those of rays in an atmosphere that bends them as if the earth had 4/3 of its radius
     (Doviak and Zrnic, Doppler Radar and Weather Observations, 1993, equations 2.28b and 2.28c).
@@ -56,13 +60,23 @@ def grid(
     if "fixed_angle" in data.variables:
         angles = np.round(np.ravel(data["fixed_angle"].values).astype(np.float64), 2).tolist()
     sweep = series.chosen(angles, at.get("sweep", "first"), "at, along sweep")
-    rays = slice(int(firsts[sweep]), int(lasts[sweep]) + 1)
+    is_upward = bool(np.all(data["elevation"].values > ZENITH)) and "time" in data.variables
+    # Each ray of a radar that looks up is a sweep, or all are one.
+    rays = slice(None) if is_upward else slice(int(firsts[sweep]), int(lasts[sweep]) + 1)
     azimuth, elevation = (np.radians(data[name].values[rays].astype(float)) for name in _ANGLES)
-    turned, order = np.unwrap(azimuth), np.arange(len(azimuth))
+    turned = np.unwrap(azimuth)
+    # A second turn would lie over the first.
+    order = np.flatnonzero(is_upward | (np.abs(turned - turned[0]) < 2 * np.pi))
     unit = meaning.metres(str(data["range"].attrs.get("units", "m"))) or 1.0
     distance, height = _places(unit * np.ravel(data["range"].values).astype(float), elevation)
     said = meaning.Meaning()
-    if np.ptp(elevation) > np.ptp(turned):
+    if is_upward:
+        what, angle = "elevation", 90.0
+        x = np.broadcast_to(data["time"].values.astype(float)[:, np.newaxis], height.shape)
+        y, clock = height + _of_radar(data, "altitude"), str(data["time"].attrs.get("units", ""))
+        said.axes = ["x time", "y height in m"]
+        said.scales = [meaning.AxisScale("time", clock), meaning.AxisScale("height", "m")]
+    elif np.ptp(elevation) > np.ptp(turned):
         what, angle = "azimuth", float(np.median(np.degrees(turned))) % 360
         x, y = distance, height + _of_radar(data, "altitude")
         said.axes = ["x distance from the radar in m", "y height in m"]
@@ -71,10 +85,11 @@ def grid(
         what, angle = "elevation", float(np.median(np.degrees(elevation)))
         x, y = distance * np.sin(azimuth)[:, None], distance * np.cos(azimuth)[:, None]
         said.axes = ["x east of the radar in m", "y north of it in m"]
-        if abs(2 * np.pi - np.ptp(turned)) * (len(order) - 1) < _GAP * np.ptp(turned):
+        once = np.ptp(turned[order])
+        if (2 * np.pi - once) * (len(order) - 1) < _GAP * once:
             order = np.append(order, 0)
     said.level = f"{what} {angle:.3g}°"
-    if len(firsts) > 1:
+    if len(firsts) > 1 and not is_upward:
         listed = ", ".join(f"{each:g}" for each in angles)
         said.notes.append(f"the sweep {angles[sweep]:g} of {listed}; --at sweep= takes another")
     # The rays run fastest, so that a whole turn is closed along its rows.
@@ -113,7 +128,10 @@ def _is_no_reflectivity(variable: tuple[Foreign, Foreign]) -> bool:
     """Return whether neither the name nor the words of a variable are those of reflectivity."""
     name, values = variable
     words = (name, values.attrs.get("standard_name", ""), values.attrs.get("long_name", ""))
-    return re.search(r"\bdbz|reflectivity", " ".join(map(str, words)).lower()) is None
+    return (
+        re.search(r"\bdbz|(?<!differential[ _])reflectivity", " ".join(map(str, words)).lower())
+        is None
+    )
 
 
 def _of_radar(data: Foreign, name: str) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -42,7 +43,8 @@ def read(path: Path) -> pv.PolyData:
     """
     columns, texts, lines = _columns(path)
     plain = {_UNIT.sub("", name).strip().lower(): name for name in reversed(columns)}
-    places = next((names for names in (*_PLACES, *_DEGREES) if {*names[:2]} <= {*plain}), None)
+    usual = (*_PLACES, *_DEGREES, *_longitudes(plain))
+    places = next((names for names in usual if {*names[:2]} <= {*plain}), None)
     if places is None:
         there = ", ".join(map(repr, [*columns, *texts]))
         raise ValueError(
@@ -61,7 +63,7 @@ def read(path: Path) -> pv.PolyData:
     left_out = [
         name for name, words in texts.items() if not _add_kinds(mesh, said, name, words[known])
     ]
-    if places in _DEGREES:
+    if places not in _PLACES:
         mesh.field_data[georeference.UNIT] = [georeference.DEGREE]
         said.axes = ["x longitude in degrees by its name", "y latitude in degrees by its name"]
     if said.axes or said.arrays:
@@ -72,6 +74,15 @@ def read(path: Path) -> pv.PolyData:
     if notes:
         _check.warn(f"file: '{path}': left out are {'; '.join(notes)}")
     return mesh
+
+
+def _longitudes(names: Iterable[str]) -> Iterator[tuple[str, str, str]]:
+    """Yield longitudes and latitudes with the same words before them, as in Darwin Core."""
+    for lon, lat, _ in _DEGREES:
+        for name in names:
+            before = name.removesuffix(lon)
+            if before != name and (before[-1:] in "_ -" or lon == "longitude"):
+                yield name, before + lat, ""
 
 
 def _add_kinds(mesh: pv.PolyData, said: meaning.Meaning, name: str, words: AnyArray) -> bool:

@@ -199,7 +199,8 @@ def _has_coasts(case: Case, *, asked: bool | None) -> bool:
     ``asked`` is whether coasts are asked for, on heights too, None where the data choose.
     """
     heights = not asked and case.array is not None and case.array.role == "heights"
-    heights = heights and not case.has_level_sea
+    # Those of stations show no coast either.
+    heights = heights and not case.has_level_sea and case.contents.dimension > 0
     is_sheet = case.contents.flat_axis == 2 and case.wishes.frame is None
     mesh = case.contents.mesh
     if asked is False or not is_sheet or heights or not georeference.on_earth(mesh):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
+import scipy
 
 from vizlight.draw.ticks import USUAL, even_levels
 from vizlight.filters.fur import LENGTH
@@ -33,6 +34,7 @@ from vizlight.looks.steps import DISPLACED, Step
 from vizlight.mesh import blocks, georeference, meaning
 from vizlight.mesh.nspace import POSITION
 from vizlight.reading import brains
+from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,7 +66,8 @@ def values(case: Case) -> Drawing:
     # The edges of an image are those of its box.
     edges = case if smooth is None else replace(case, data=smooth)
     if mesh is None:
-        mesh = _by_corner(case, array) if array.role == "kinds" else case.surface
+        by_corner = array.role == "kinds" or _is_of_single_points(case, array)
+        mesh = _by_corner(case, array) if by_corner else case.surface
     if array.role == "kinds" and case.contents.dimension == 3:
         kinds = kinds_of(mesh.run(), array.name)
         if len(kinds) == 1 and smooth is not None:
@@ -370,6 +373,17 @@ def _of_labels(case: Case, array: Named) -> Step | None:
     if not fills or not isinstance(grid, pv.ImageData) or grid[array.name].dtype.kind not in "iu":
         return None
     return Step("surface", "files.surface_of", case.data, labels=array.name)
+
+
+def _is_of_single_points(case: Case, array: Named) -> bool:
+    """Return whether most values of a flat grid are at no cell with values at all its corners."""
+    mesh = case.data.run()
+    sizes = [size for size in reversed(dimensions(mesh)) if size > 1]
+    if array.of_cells or array.role != "values" or len(sizes) != 2:
+        return False
+    known = np.isfinite(np.asarray(mesh.point_data[array.name])).reshape(sizes)
+    seen = scipy.ndimage.binary_opening(known, np.ones((2, 2), dtype=np.bool_))
+    return bool(seen.sum() < known.sum() / 2)
 
 
 def _by_corner(case: Case, array: Named) -> Step:
