@@ -12,7 +12,7 @@ from vizlight.geometry import manifolds
 
 
 @pytest.fixture(autouse=True)
-def _here(tmp_path, monkeypatch):
+def _here(tmp_path, monkeypatch, few_strokes):
     """Work in a new folder."""
     monkeypatch.chdir(tmp_path)
 
