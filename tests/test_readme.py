@@ -50,6 +50,7 @@ def named_commands(path):
     return quoted + [m[1] for line in lines(path) if (m := re.search(r"vizlight ((?!/).+)", line))]
 
 
+@pytest.mark.usefixtures("few_strokes")
 @pytest.mark.opengl
 @pytest.mark.parametrize(
     "path",
@@ -106,6 +107,7 @@ def test_a_page_of_the_guide_runs_and_writes_its_pictures(path, tmp_path, monkey
         mended(names)
 
 
+@pytest.mark.usefixtures("few_strokes")
 @pytest.mark.opengl
 def test_the_command_of_the_example_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -150,7 +150,7 @@ def folder(tmp_path_factory):
     return folder
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.opengl
 @pytest.mark.parametrize(
     "real",

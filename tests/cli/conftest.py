@@ -12,8 +12,9 @@ from vizlight.geometry import manifolds
 
 
 @pytest.fixture(autouse=True)
-def _here(tmp_path, monkeypatch):
-    """Work in a new folder."""
+def _here(tmp_path, monkeypatch, request):
+    """Work in a new folder, with few strokes in what is drawn."""
+    request.getfixturevalue("few_strokes")
     monkeypatch.chdir(tmp_path)
 
 

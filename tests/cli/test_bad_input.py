@@ -7,6 +7,7 @@ import pytest
 import pyvista as pv
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("line", "words"),
     [

@@ -93,7 +93,7 @@ def test_the_light_of_a_question_is_that_of_any_command(command, question, folde
     assert "presets" not in done(*command.split(), "--script")
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.opengl
 @pytest.mark.parametrize("line", COMMANDS.values(), ids=COMMANDS)
 def test_the_printed_script_does_the_same(line, folder, tmp_path, monkeypatch, run, done):
@@ -254,7 +254,7 @@ def test_steps_without_a_flow_name_those_that_have_one(folder, done, refused):
     # So it is where the only vectors are taken.
     assert refused("streamlines case/case.foam --time 0 -o a.vtp") == err
     (folder / "out").mkdir()
-    assert "note" not in done(*arguments, "--times", "1:", "-o", "out", *SMALL)
+    assert "of 3 steps" not in done(*arguments, "--times", "1:", "-o", "out", *SMALL)
     made = {path.name for path in Path("out").glob("*.vtp")}
     assert made == {f"case-streamlines-000{i}.vtp" for i in range(2)}
     (folder / "all").mkdir()

@@ -44,6 +44,7 @@ def test_a_field_at_rest_does_not_turn():
     assert fields.turn_of(grid, "wind") == 0
 
 
+@pytest.mark.usefixtures("few_strokes")
 def test_a_slow_field_is_arrows_along_it_over_its_speed():
     look = vizlight.look(sheet(0.05))
     assert look.drawing.words == "length of wind in colours, with strokes along it"
@@ -67,6 +68,7 @@ def test_a_slow_field_is_arrows_along_it_over_its_speed():
     assert np.all(np.diff(age) * along > 0)
 
 
+@pytest.mark.usefixtures("few_strokes")
 def test_the_title_of_a_cut_tells_its_place_its_axes_and_what_its_arrows_are():
     grid = pv.ImageData(dimensions=(9, 31, 31), spacing=(0.5, 0.1, 0.1))
     x, y, z = grid.points.T
@@ -206,6 +208,7 @@ def test_an_image_with_vectors_in_a_small_part_is_drawn_around_that_part():
     assert look.key[0]["title"] == "V"
 
 
+@pytest.mark.usefixtures("few_strokes")
 def test_strokes_along_the_border_are_left_out():
     grid = sheet(0.0)
     grid["wind"][:, 0] += np.asarray(grid.points)[:, 0] / 30
@@ -309,6 +312,7 @@ def test_the_title_of_a_speed_is_what_the_names_of_components_have_in_common():
     assert drawing.titled_length(grid, "flux_x,flux_y") == "length of flux"
 
 
+@pytest.mark.usefixtures("few_strokes")
 def test_flow_on_a_surface_is_its_evenly_spaced_strokes():
     grid = sheet(0.05, 16)
     look = vizlight.look(grid, "flow", size=(240, 160))
@@ -349,6 +353,7 @@ def test_streamlines_have_the_colours_of_the_temperature_that_they_carry():
     assert speed_drawing.layers[0].keywords["scalars"] == "speed"
 
 
+@pytest.mark.usefixtures("few_strokes")
 def test_strokes_of_a_slab_lie_in_its_middle_and_not_on_its_sides():
     slab = pv.ImageData(dimensions=(31, 21, 2), spacing=(1, 1, 3)).cast_to_unstructured_grid()
     x, y, _ = slab.points.T

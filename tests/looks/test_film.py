@@ -124,6 +124,7 @@ def test_strokes_move_between_the_steps(turning: Path, tmp_path: Path) -> None:
         assert np.abs(one - other).max() > 30
 
 
+@pytest.mark.usefixtures("few_strokes")
 def test_steps_that_cannot_be_drawn_are_left_out_with_a_warning(tmp_path: Path) -> None:
     still = np.zeros((63, 3))
     way = np.array([1.0, 0.5, 0.0]) * (1 + pv.ImageData(dimensions=SHEET).points[:, :1] / 8)

@@ -101,6 +101,7 @@ KINDS = {
 }  # fmt: skip
 
 
+@pytest.mark.usefixtures("few_strokes")
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_data_choose(kind):
     mesh, question, shown, array = KINDS[kind]

@@ -308,6 +308,7 @@ def test_a_relief_of_the_whole_earth_has_a_sky_where_it_has_few_points(monkeypat
     assert "occlusion" not in vizlight.look(world, size=SIZE).drawing.lit.keywords
 
 
+@pytest.mark.usefixtures("few_strokes")
 def test_strokes_of_a_map_have_their_course():
     grid = chart(20, 10, 0, 55, name="warmth")
     grid["wind"] = np.tile([10.0, 10.0, 0.0], (grid.n_points, 1))

@@ -125,6 +125,7 @@ def phong_of_the_grid(degrees, r):
     return mirror[seen] ** r, half[seen], facing[seen] >= 0
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("factor", [1.0, 2.0, 3.0, 4.0, 6.0])
 @pytest.mark.parametrize("degrees", [0.0, 1.0, 45.0, 90.0, 135.0, 170.0])
 @pytest.mark.parametrize("r", [1.0, 5.0, 30.0])

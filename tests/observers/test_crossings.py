@@ -163,6 +163,7 @@ def test_less_contrast_tells_less(haloed):
     assert told[-1] == 0
 
 
+@pytest.mark.slow
 def test_narrower_lines_tell_less():
     mesh = lattice()
     picture, camera = shot(mesh, line_width=4)

@@ -216,6 +216,7 @@ def shot(mesh, **how):
     return picture, camera
 
 
+@pytest.mark.slow
 def test_any_picture_is_read_by_its_key(tmp_path):
     mesh = sheet()
     picture, camera = shot(mesh, scalars="height", cmap="coolwarm", lighting=False)

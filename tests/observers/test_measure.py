@@ -205,6 +205,7 @@ def test_narrower_lines_are_read_worse_until_chance():
     assert vizlight.legibility(mesh, picture=dark, **how).heading.bits > 0.8 * bits[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("question", [pytest.param("shape", marks=pytest.mark.slow), "speed"])
 def test_thin_lines_on_a_surface_leave_it_readable(question):
     mesh = sheet()

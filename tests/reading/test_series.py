@@ -122,6 +122,7 @@ def test_a_case_in_parts_of_processors_is_read(case):
     assert vizlight.read(case).n_points == 125
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("marked", [True, False])
 def test_the_folder_of_a_case_is_read_as_its_file(marked, case):
     expected = vizlight.read(case, time=0.5)

@@ -143,7 +143,7 @@ def small_parts(monkeypatch):
     return apply
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", GRIDS)
 @pytest.mark.parametrize(
     "view", [None, View(direction=(1, 2, 3)), View(position=(2, 3, -4))], ids=["", "far", "near"]

@@ -98,6 +98,7 @@ def test_a_bowl():
     assert np.abs(found.share[inner] - 0.5).mean() < 0.005
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("slope", [0.2, 1.0])
 @pytest.mark.parametrize("error", [0.02, pytest.param(0.0015, marks=pytest.mark.slow)])
 def test_the_error_holds_on_rough_ground(slope, error):

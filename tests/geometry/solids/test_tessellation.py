@@ -331,7 +331,7 @@ HARD = {
 }
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", HARD)
 def test_positions_that_flip_triangles_or_move_creases(name):
     found, _ = solid_trees.problems(solid_trees.tree(*HARD[name]), count=20_000)
