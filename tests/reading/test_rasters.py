@@ -271,3 +271,18 @@ def test_what_an_elevation_model_misses_is_nan(tmp_path):
     assert np.isnan(heights[-1, :4]).all()
     np.testing.assert_array_equal(heights[-1, 4:], rows[0, 4:])
     assert str(mesh.field_data["unit"][0]) == "metre"
+
+
+def test_corners_in_degrees_and_minutes_are_read_whole(tmp_path):
+    """GDAL reads 12 degrees of 12°40'E."""
+    head = "ncols 4\nnrows 2\nxllcorner {}\nyllcorner {}\ncellsize 0.1\nNODATA_value -9999\n"
+    rows = "5 6 7 8\n1 2 3 4\n"
+    for x, y, corner in (
+        ("12°40'E", "47°50'30\"N", (12 + 2 / 3, 47 + 50.5 / 60)),
+        ("70°30'W", "33°15'S", (-70.5, -33.25)),
+        ("12.5", "-47.25", (12.5, -47.25)),
+    ):
+        path = tmp_path / "a.asc"
+        path.write_text(head.format(x, y) + rows, encoding="utf-8")
+        mesh = vizlight.read(path)
+        np.testing.assert_allclose(mesh.bounds[::2][:2], np.add(corner, 0.05), atol=1e-6)

@@ -289,6 +289,8 @@ def _grid(file: Foreign) -> tuple[pv.ImageData | pv.StructuredGrid, tuple[Slice,
     """Return the grid of a raster, and the order of rows and columns along which x and y rise."""
     # Column u and row v of a raster are at x = a u + b v + c and y = d u + e v + f.
     a, b, c, d, e, f = tuple(file.transform)[:6]
+    if file.driver == "AAIGrid":
+        c, f = c + _left_out(file, "x"), f + _left_out(file, "y")
     if file.transform.is_identity:
         e, f = -1.0, float(file.height)  # a picture, whose first row is its top
     # Values are those of the middle of a pixel, half of one from the corner that is mapped.
@@ -311,6 +313,26 @@ def _grid(file: Foreign) -> tuple[pv.ImageData | pv.StructuredGrid, tuple[Slice,
     grid.dimensions = (file.width, file.height, 1)
     grid.points = points.reshape(-1, 3)
     return grid, (slice(None), slice(None))
+
+
+#: A corner of a grid in text in degrees, minutes and seconds, such as 12°40'E.
+_CORNER = re.compile(
+    r"(?im)^(?P<axis>[xy])ll(?:corner|center)\s+(?P<degrees>[+-]?\d+)\s*°"
+    r"(?:\s*(?P<minutes>[\d.]+)\s*['′])?(?:\s*(?P<seconds>[\d.]+)\s*[\"″])?\s*(?P<side>[NSEW]?)"
+)
+
+
+def _left_out(file: Foreign, axis: str) -> float:
+    """Return the degrees by which a corner in words is off its first number, which GDAL reads."""
+    with Path(file.name).open(encoding="utf-8", errors="replace") as text:
+        corners = _CORNER.finditer(text.read(1 << 10))
+    for corner in corners:
+        if corner["axis"].lower() == axis:
+            whole = float(corner["degrees"])
+            parts = float(corner["minutes"] or 0) / 60 + float(corner["seconds"] or 0) / 3600
+            angle = math.copysign(abs(whole) + parts, whole)
+            return (-angle if corner["side"].upper() in ("S", "W") else angle) - whole
+    return 0.0
 
 
 #: Place of the number of columns in the header of an elevation model, and the least that VTK reads.
