@@ -122,6 +122,16 @@ def test_a_lit_mesh_is_written_by_its_record_and_colours_of_data_count(tmp_path)
     assert len(np.unique(by_record[1][1], axis=0)) > 1000
 
 
+@pytest.mark.filterwarnings("ignore:.*depend on the eye")
+def test_blocks_in_scenes_of_their_own_are_written_as_each_is_lit(tmp_path):
+    scenes = [Scene(lights=Light(direction=way)) for way in ((0, 0, 1), (1, 0, 0))]
+    lit = [vizlight.illuminate(pv.Sphere(), scene) for scene in scenes]
+    text, arrays = content(vizlight.save_gltf(pv.MultiBlock(lit), tmp_path / "both.glb"))
+    for i, mesh in enumerate(lit):
+        alone = shown(*content(vizlight.save_gltf(mesh, tmp_path / "one.glb")))
+        np.testing.assert_array_equal(shown({"meshes": text["meshes"][i:]}, arrays), alone)
+
+
 def test_what_depends_on_the_eye_is_fixed_and_said_to_be(tmp_path):
     with pytest.warns(UserWarning, match=r"lit.glb: .*; the headlight and the light that follows"):
         path = vizlight.save_gltf(pv.Sphere(), tmp_path / "lit.glb", scene=Scene())

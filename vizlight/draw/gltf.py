@@ -16,7 +16,13 @@ from vizlight._types import Array, Given, Indices, Keywords, Raw
 from vizlight._version import __version__
 from vizlight.draw.keywords import LIGHT
 from vizlight.draw.live import lifted
-from vizlight.draw.sources import LEFT_OUT, fixed_colors, sources_in_scene, tinted
+from vizlight.draw.sources import (
+    LEFT_OUT,
+    fixed_colors,
+    lit_apart,
+    sources_in_scene,
+    tinted,
+)  # fmt: skip
 from vizlight.filters.relight import Source
 from vizlight.filters.tint import ColorMap, color_table, map_colors, values_of, values_of_blocks
 from vizlight.mesh import blocks
@@ -98,12 +104,16 @@ def save_gltf(
         raise TypeError(_check.message("options", "an option of vizlight.illuminate", repr(name)))
     if scalars is not None:
         _check.text("scalars", scalars, expected="the name of an array")
-    sources, used = sources_in_scene(mesh, scene, options)
+    parts = [sources_in_scene(part, scene, options) for part in lit_apart(mesh, scene, options)]
+    sources = [source for of_part, _ in parts for source in of_part]
+    scenes = [used for of_part, used in parts for _ in of_part]
     names = [path.lstrip("/") for _, path in blocks.named_blocks(mesh)]
     file, fixed = _File(), set()
     drawn = [_drawn(source.mesh, scalars) for source in sources]
     colors = _colors(sources, drawn, scalars, cmap, clim)
-    for source, name, (surface, ids), color in zip(sources, names, drawn, colors, strict=True):
+    for source, used, name, (surface, ids), color in zip(
+        sources, scenes, names, drawn, colors, strict=True
+    ):
         if not source.mesh.n_points:
             continue
         n = int(source.inputs.points.shape[1])

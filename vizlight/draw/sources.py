@@ -107,6 +107,18 @@ def sources_in_scene(
     return sources, used
 
 
+def lit_apart(
+    mesh: pv.DataSet | pv.MultiBlock, scene: object, options: Keywords
+) -> list[pv.DataSet | pv.MultiBlock]:
+    """Return the blocks of a mesh that were lit in scenes of their own, else the mesh alone."""
+    if scene is None and not options and isinstance(mesh, pv.MultiBlock) and relight.is_lit(mesh):
+        lit = [block for block in mesh if block is not None]
+        first, *others = (records.provenance(block)["scene"] for block in lit)
+        if any(other != first for other in others):
+            return lit
+    return [mesh]
+
+
 def with_sharp_edges(mesh: pv.DataSet, light: LightOptions) -> pv.DataSet:
     """Return a surface with points split at sharp edges, the mesh itself if it has none.
 
