@@ -248,17 +248,6 @@ def _near(seen: Bools, line: Indices, count: Array) -> Bools:
     return near
 
 
-def _near(seen: Bools, line: Indices, count: Array) -> Bools:
-    """Return which places have one that is seen within some places before or behind."""
-    at = np.arange(len(seen))
-    # Lines are as far from each other as no place of a line is.
-    place = at + line * len(seen)
-    before = np.maximum.accumulate(np.where(seen, place, -2 * len(seen)))
-    after = np.minimum.accumulate(np.where(seen, place, 1 << 60)[::-1])[::-1]
-    near: Bools = np.minimum(place - before, after - place) <= count
-    return near
-
-
 def _has_halo(samples: Samples, bare: Samples, place: Array, away: Array, band: Array) -> Bools:
     """Return where the colour of a halo, on either side of a line, covers another."""
     shown = np.zeros(len(place), dtype=np.bool_)
@@ -350,7 +339,7 @@ def _read(picture: Array, place: Array) -> Array:
 
 
 def strokes_of(courses: Sequence[Course], error: float) -> tuple[list[Polyline | Fill], float]:
-    """Return strokes from the farthest to the nearest, and their largest difference in 1/255.
+    """Return strokes from the farthest to the nearest, and the largest error of their colours.
 
     A visible piece of a line has one halo, and over it a stroke for each run of like colours; those
     of several widths are outlines. Pieces of a layer that look alike are one path.
@@ -371,7 +360,7 @@ def strokes_of(courses: Sequence[Course], error: float) -> tuple[list[Polyline |
     ]
     every = Course(*(np.concatenate(part) for part in zip(*lines, strict=True)))
     rows = np.flatnonzero(every.seen)
-    every = Course(*(part[rows] for part in every))
+    every = Course._make(part[rows] for part in every)
     is_first = np.append(True, (np.diff(rows) != 1) | (np.diff(every.line) != 0))
     pieces = np.append(np.flatnonzero(is_first), len(rows))
     runs = _runs(every.color, pieces, RUN * error)
@@ -390,7 +379,7 @@ def strokes_of(courses: Sequence[Course], error: float) -> tuple[list[Polyline |
     return items, float(away.max())
 
 
-class _Part(NamedTuple):
+class _StyledPath(NamedTuple):
     """Line or, without a width, outline in a layer, over its halo or as one."""
 
     layer: int
@@ -403,7 +392,7 @@ class _Part(NamedTuple):
 
 def _parts(
     every: Course, pieces: Indices, runs: Indices, color: Array, limit: float
-) -> Iterator[_Part]:
+) -> Iterator[_StyledPath]:
     """Yield the halos of pieces and the strokes of runs."""
     layer = _layers(every, pieces)
     piece = np.repeat(np.arange(len(layer)), np.diff(pieces))
@@ -430,7 +419,7 @@ def _parts(
                 mean = float(np.mean(every.width[first : last + 1])) + 2 * halo
                 mean = round(mean, 1 if mean > 1 else 2)
             is_whole = bool(over and mean and every.end[first] and every.end[last])
-            yield _Part(int(layer[at]), over, rgb, mean, is_whole, points)
+            yield _StyledPath(int(layer[at]), over, rgb, mean, is_whole, points)
 
 
 def _runs(color: Array, starts: Indices, error: float) -> Indices:

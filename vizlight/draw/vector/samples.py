@@ -152,9 +152,9 @@ def samples_of(plotter: pv.BasePlotter, *, fine: bool = True) -> Samples:
     # Bytes of a value do not blend.
     if fine and not any(prop.HasTranslucentPolygonalGeometry() for prop in every):
         actors = [actor for renderer in plotter.renderers for actor in actors_of(renderer)]
-        for channel, fine in enumerate(_packed(plotter, actors, colors.shape[2])):
-            near = np.abs(fine - colors[..., channel]) <= ROUNDING
-            colors[..., channel][near] = fine[near]
+        for channel, exact in enumerate(_packed(plotter, actors, colors.shape[2])):
+            near = np.abs(exact - colors[..., channel]) <= ROUNDING
+            colors[..., channel][near] = exact[near]
     return Samples(colors, depth)
 
 
