@@ -463,9 +463,9 @@ class Component:
         Notes
         -----
         The light is read back from the plotter's own drawing in 24 bits, at 2 to 4 samples along
-        the side of a pixel; translucent surfaces have 8 bits. Edges are within half a sample. Of
-        the error, 8 % let the light vary less, so that its contours are smooth, and 12 % let
-        borders lie where the light is that far from their level. The rim of a surface has the
+        the side of a pixel; translucent surfaces and lit lines have 8 bits. Edges are within half a
+        sample. Of the error, 8 % let the light vary less, so that its contours are smooth, and 12 %
+        let borders lie where the light is that far from their level. The rim of a surface has the
         colour within it, as its pixels are mixtures. The source is the rendering by filled
         polygons in the painter's order of Conway and Cottingham, The Isoluminance Contour Model.
         """

@@ -1,5 +1,6 @@
 """Vector graphics of plotters: exact colours, hidden faces, text, sizes, whole files."""
 
+import itertools
 import re
 import shutil
 import subprocess
@@ -90,12 +91,12 @@ def test_lines_are_strokes_of_their_width_and_those_behind_end_at_the_halo(plott
         plotter.vizlight.add_mesh(line, scalars="c", rgb=True, line_width=4, halo=1.0)
     seen_from_above(plotter)
     text = plotter.vizlight.save_graphic(tmp_path / "lines.svg").read_text()
-    strokes = re.findall(r'stroke="(#\w+)" stroke-width="([\d.]+)"', text)
-    cores = [(color, float(width) / 10) for color, width in strokes if color != "#ffffff"]
-    assert [width for _, width in cores] == pytest.approx([4.0] * len(cores))
-    # The line behind is in two parts; the nearer one comes last and is whole.
-    assert len(cores) == 3
-    assert cores[-1][0] != cores[0][0] == cores[1][0]
+    strokes = re.findall(r'stroke="(#\w+)" stroke-width="([\d.]+)"[^>]* d="([^"]*)"', text)
+    cores = [stroke for stroke in strokes if stroke[0] != "#ffffff"]
+    assert [float(width) for _, width, _ in cores] == [40.0, 40.0]
+    # The line behind is one path of two parts; the nearer one comes last and is whole.
+    assert [path.count("M") for *_, path in cores] == [2, 1]
+    assert cores[0][0] != cores[1][0]
     plotter.vizlight.add_mesh(line, scalars="c", rgb=True, line_width=4, halo="#008000")
     text = plotter.vizlight.save_graphic(tmp_path / "outlines.svg").read_text()
     assert "#008000" in re.findall(r'stroke="(#\w+)"', text)
@@ -170,6 +171,25 @@ def test_many_colours_are_plates_within_the_error_and_a_page_of_its_own_size(plo
     assert "mix-blend-mode" not in few
 
 
+def test_pieces_of_a_line_have_their_exact_colour_one_halo_and_no_seams(plotter, tmp_path):
+    plotter.set_background("white")
+    line = pv.Line((-1, 0, 0), (1, 0, 0), resolution=40)
+    line["c"] = np.linspace((200, 40, 0), (200, 180, 0), line.n_points).astype(np.uint8)
+    scene = Scene(lights=(), material=vizlight.Material(ambient=1, diffuse=0, specular=0))
+    options = {"scalars": "c", "rgb": True, "line_width": 4, "scene": scene}
+    plotter.vizlight.add_mesh(line, halo="black", **options)
+    seen_from_above(plotter)
+    text = plotter.vizlight.save_graphic(tmp_path / "line.svg", error=8).read_text()
+    strokes = re.findall(r'stroke="(#\w+)"[^>]* d="M(\d+) \d+l(\d+)', text)
+    assert [color for color, *_ in strokes].count("#000000") == 1
+    cores = [(color, int(x), int(x) + int(way)) for color, x, way in strokes[1:]]
+    assert 8 < len(cores) < 16
+    assert all(color[1:3] == "c8" and color[5:] == "00" for color, *_ in cores)
+    # Each begins within the one before.
+    cores.sort(key=lambda core: core[1])
+    assert all(end > begin for (*_, end), (_, begin, _) in itertools.pairwise(cores))
+
+
 def test_lines_of_changing_width_are_outlines(plotter, tmp_path):
     line = pv.Line((-1, 0, 0), (1, 0, 0), resolution=40)
     line["width"] = np.linspace(0, 1, line.n_points)
@@ -177,6 +197,7 @@ def test_lines_of_changing_width_are_outlines(plotter, tmp_path):
     seen_from_above(plotter)
     text = plotter.vizlight.save_graphic(tmp_path / "wedge.svg").read_text()
     outline = re.findall(r'<path fill="#0[01]0[01]0[01]" d="([^"]*)"', text)[-1]
+    outline = outline.split("M")[-1]
     corners = np.cumsum(np.array(re.findall(r"-?\d+", outline), dtype=float).reshape(-1, 2), axis=0)
     assert np.ptp(corners[:, 1]) / 10 == pytest.approx(12, abs=0.3)
     # A wedge needs no more than its corners.

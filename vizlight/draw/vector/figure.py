@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,9 +16,9 @@ from vizlight import _check
 from vizlight._types import Array, Bools, Color, Slice
 from vizlight.draw.live import Live
 from vizlight.draw.vector import VECTORS
-from vizlight.draw.vector.files import Fill, Item, Picture, Plate, Sheet, pdf_of, svg_of
+from vizlight.draw.vector.files import Fill, Item, Picture, Plate, Sheet, pdf_of, rgb_of, svg_of
 from vizlight.draw.vector.lines import Course, course_of, lines_of, strokes_of
-from vizlight.draw.vector.samples import Samples, enlarged, samples_of
+from vizlight.draw.vector.samples import Samples, enlarged, samples_of, without
 from vizlight.draw.vector.words import words_of
 from vizlight.geometry.contours.faces import faces
 from vizlight.geometry.contours.levels import levels
@@ -32,8 +32,8 @@ LARGEST = 500_000
 #: worth a warning.
 FINEST, COARSEST, UNSAID = 2.0, 16.0, 4.0
 #: Bytes of a figure of an error of 1 for each sample and difference of neighbouring ones by 1, as
-#: measured, and the largest difference that counts.
-BYTES, EDGE = 1.6, 32.0
+#: measured, the largest difference that counts, and bytes for each pixel along a line.
+BYTES, EDGE, ALONG = 1.6, 32.0, 40.0
 #: Colours up to which those of three channels are faces in SVG files, and plates above.
 FEW = 128
 #: Error that would be needed above which no coarser figure is tried.
@@ -114,15 +114,15 @@ class _Drawn:
         width, height = plotter.window_size
         scale = int(min(max((SAMPLES / (width * height)) ** 0.5, 1), FINE))
         words, props = words_of(plotter)
-        lines, courses = lines_of(plotter, live_of), []
-        with enlarged(plotter, scale, [*props, *(each.actor for each in lines)]):
-            samples = samples_of(plotter)
-        if lines:
-            with enlarged(plotter, scale, props):
-                for each in lines:
-                    each.actor.GetProperty().SetLineWidth(scale * each.width)
-                whole = samples_of(plotter)
-                courses = [course_of(each, whole, samples, scale) for each in lines]
+        lines = lines_of(plotter, live_of)
+        with enlarged(plotter, scale, props):
+            for each in lines:
+                each.actor.GetProperty().SetLineWidth(scale * each.width)
+            whole = samples = samples_of(plotter, fine=not lines)
+            if lines:
+                with without([each.actor for each in lines]):
+                    samples = samples_of(plotter)
+            courses = [course_of(each, whole, samples, scale) for each in lines]
         red, green, blue = pv.Color(plotter.background_color).float_rgb
         ground = np.rint(255 * np.array((red, green, blue)))
         shown = np.any(samples.colors != ground[: samples.colors.shape[2]], axis=2)
@@ -139,7 +139,8 @@ class _Drawn:
         for near, far in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
             step = np.minimum(np.abs(colors[near] - colors[far]), np.float32(EDGE))
             total += float(np.sum(step[shown[near] & shown[far]], dtype=np.float64))
-        size = BYTES * total / self.scale
+        along = sum(np.count_nonzero(each.seen) for each in self.courses)
+        size = BYTES * total / self.scale + ALONG * along
         return float(np.clip((size / (AIM * LARGEST)) ** (1 / POWER), FINEST, COARSEST))
 
     def has_more_colors(self, count: int, error: float) -> bool:
@@ -156,10 +157,12 @@ class _Drawn:
         else:
             parts = [self._faces(slice(None), error)]
             fills = [*parts[0][2]]
-        count, reached = sum(part[0] for part in parts), max(part[1] for part in parts)
+        lines, away = strokes_of(self.courses, error)
+        count = sum(part[0] for part in parts)
+        reached = max(away, *(part[1] for part in parts))
         kind = "levels of red, green and blue" if plates else "colours"
         words = f"{count} {kind}, each within {reached:.1f} of 255 of the light"
-        return _Attempt(self._written(suffix, fills, error, words), error, reached)
+        return _Attempt(self.written(suffix, fills, lines, words), error, reached)
 
     def _faces(self, channels: Slice, error: float) -> tuple[int, float, list[Fill]]:
         """Return the number of colours of channels, their largest error, and their faces.
@@ -177,7 +180,7 @@ class _Drawn:
             color = np.zeros(3)
             color[channels] = face.color
             rings = [ring + self.place for ring in face.rings]
-            fills.append(Fill(_rgb(color), rings))
+            fills.append(Fill(rgb_of(color), rings))
         page = _page(self.size)
         last = fills.pop() if fills else Fill(self.background, [page])
         fills.append(Fill(last.color, [page, *last.rings[1:]]))
@@ -185,7 +188,9 @@ class _Drawn:
         loose = (STEADY + LOOSE) * error if palette.error > EXACT else 0.0
         return len(palette.colors), palette.error + loose, fills
 
-    def pixels(self, suffix: str, along: int, quality: int | None) -> _Attempt:
+    def pixels(
+        self, suffix: str, along: int, quality: int | None, lines: Sequence[Item]
+    ) -> _Attempt:
         """Return the figure with so many pixels along each of the picture's own, as PNG or JPEG."""
         step = max(self.scale // along, 1)
         colors = np.clip(np.rint(self.samples.colors), 0, 255).astype(np.uint8)
@@ -195,15 +200,12 @@ class _Drawn:
         shown = np.broadcast_to(mean, (*mean.shape[:2], 3))
         size = (columns / self.scale, rows / self.scale)
         picture: list[Item] = [Picture(np.ascontiguousarray(shown), self.place, size, quality)]
-        data = self._written(suffix, picture, COARSEST, "pixels, strokes and words")
+        data = self.written(suffix, picture, lines, "pixels, strokes and words")
         return _Attempt(data, 0.0, np.inf)
 
-    def _written(self, suffix: str, faces: list[Item], error: float, words: str) -> bytes:
-        """Return a file of faces, with strokes within an error, all of three channels."""
-        colors = (np.broadcast_to(each.color, (len(each.color), 3)) for each in self.courses)
-        courses = [each._replace(color=c) for each, c in zip(self.courses, colors, strict=True)]
-        lines: list[Item] = [*strokes_of(courses, error)]
-        groups = {"faces": faces, "lines": lines, "words": self.words}
+    def written(self, suffix: str, faces: list[Item], lines: Sequence[Item], words: str) -> bytes:
+        """Return a file of faces, with strokes and words over them."""
+        groups = {"faces": faces, "lines": [*lines], "words": self.words}
         sheet = Sheet(self.size, self.background, groups, words)
         return svg_of(sheet).encode() if suffix == ".svg" else pdf_of(sheet)
 
@@ -221,11 +223,6 @@ def _page(size: tuple[int, int]) -> Array:
     """Return the ring around a picture."""
     width, height = size
     return np.array([(0, 0), (width, 0), (width, height), (0, height)], dtype=np.float64)
-
-
-def _rgb(color: Array) -> Color:
-    red, green, blue = np.broadcast_to(color, 3) / 255
-    return float(red), float(green), float(blue)
 
 
 def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt, *, plates: bool) -> _Attempt:
@@ -252,9 +249,11 @@ def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt, *, plates: bool) -> 
             power = float(np.clip(fall, POWER / 8, POWER))
     if best is not None:
         return best
+    lines, _ = strokes_of(drawn.courses, COARSEST)
     # Pixels in place of faces help nothing where it is the strokes that are many.
-    for along, quality in PIXELS:
-        pixels = drawn.pixels(suffix, along, quality)
+    few = len(drawn.written(suffix, [], lines, "")) <= LARGEST
+    for along, quality in PIXELS if few else ():
+        pixels = drawn.pixels(suffix, along, quality, lines)
         if len(pixels.data) <= LARGEST:
             return pixels
     return attempt if attempt.asked == COARSEST else drawn.attempt(suffix, COARSEST, plates=plates)

@@ -38,10 +38,10 @@ class Fill:
 
 @dataclass(frozen=True)
 class Polyline:
-    """Line of one colour through points in pixels, of a width in pixels."""
+    """Lines of one colour through points in pixels, of a width in pixels."""
 
     color: Color
-    points: Array
+    lines: Sequence[Array]
     width: float
     round: bool = False
 
@@ -124,6 +124,17 @@ class Sheet:
     words: str
 
 
+def rgb_of(color: Array) -> Color:
+    """Return a colour of one or three channels from 0 to 255 as three from 0 to 1.
+
+    Parameters
+    ----------
+    color : ndarray, shape (c,)
+    """
+    red, green, blue = np.broadcast_to(color, 3) / 255
+    return float(red), float(green), float(blue)
+
+
 def svg_of(sheet: Sheet) -> str:
     """Return a sheet as the text of an SVG file.
 
@@ -164,7 +175,7 @@ def _drawn(every: Iterable[Item]) -> Iterable[str]:
             cap = ' stroke-linecap="round"' if item.round else ""
             yield (
                 f'<path stroke="{_hex(item.color)}" stroke-width="{STEPS * item.width:.3g}"{cap} '
-                f'd="{_path([item.points], closed=False)}"/>\n'
+                f'd="{_path(item.lines, closed=False)}"/>\n'
             )
         elif isinstance(item, Words):
             yield from _text(item)
@@ -253,8 +264,8 @@ def figure_of(sheet: Sheet) -> Figure:
         elif isinstance(item, Polyline):
             cap = "round" if item.round else "butt"
             patch = PathPatch(
-                Path(item.points), fill=False, edgecolor=item.color, capstyle=cap,
-                linewidth=item.width * 72 / DPI, joinstyle="round",
+                Path.make_compound_path(*map(Path, item.lines)), fill=False, capstyle=cap,
+                edgecolor=item.color, linewidth=item.width * 72 / DPI, joinstyle="round",
             )  # fmt: skip
         elif isinstance(item, Words):
             for line, y in item.baselines():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import operator
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
@@ -9,35 +11,39 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor, vtkCamera, vtkRenderer
 
-from vizlight._types import Array, Bools, Indices
+from vizlight._types import Array, Bools, Color, Indices
 from vizlight.draw.cameras import pixel_sizes
 from vizlight.draw.glsl import Stroke as Style
 from vizlight.draw.live import Live, in_view, matrix_of
 from vizlight.draw.strokes import LEAST, color_of_halo, line_samples
-from vizlight.draw.vector.files import Fill, Polyline
+from vizlight.draw.vector.files import Fill, Polyline, rgb_of
 from vizlight.draw.vector.samples import Samples, actors_of
 from vizlight.geometry.contours.palette import nearest_colors
-from vizlight.geometry.contours.rings import SEEN, simplified
+from vizlight.geometry.contours.rings import simplified
 from vizlight.vtk.polylines import cells_of, has_lines_only
 
 #: Distance of a line behind what is drawn, in its widths, up to which it is what is drawn.
 BEHIND = 1.5
-#: Ratio of two widths that are drawn as one, and difference from the ground that is rounding.
-ALIKE, SAME = 1.12, 2.0
-#: Width in pixels above which a line is its outline, so that its parts join without a wedge, and
-#: more lines than one actor has.
-BROAD, LINES = 3.0, 1 << 40
-#: Places by which they overlap.
-EARLIER = 2
+#: The same of a line with a halo, whose depth is known.
+ALIKE = 0.3
+#: Ratio of two widths that are drawn as one, and difference from a halo that is rounding.
+EVEN, SAME = 1.12, 2.0
+#: More lines than one actor has.
+LINES = 1 << 40
+#: Share of an error by which colours of a run may differ from their mean; the rest is for runs of
+#: one colour.
+RUN = 0.75
+#: Errors in 1/255, and distances in pixels of lines from their strokes.
+LIMITS = (2.0, 16.0), (0.1, 0.25)
 #: Width in pixels below which nothing is drawn, and most places on a segment.
 THIN, LONGEST = 0.05, 20_000
 #: Distance by which lines may be drawn nearer to the eye than they are, as a share of their size.
 LIFTED = 1e-3
-#: Share of a halo that is drawn where it covers no surface: other lines end at its border, and
-#: those that run together keep most of their width.
+#: Share of a halo that is drawn where it does not show: other lines end at its border, and those
+#: that run together keep most of their width.
 NARROW = 0.3
-#: Shares of the width at which the colour of a line is read; its mean is that of a round one.
-ACROSS = (-0.25, 0.0, 0.25)
+#: Shares of the width at which a line is read; the mean of its colours is that of a round one.
+ACROSS = (-0.35, 0.0, 0.35)
 
 
 class Lines(NamedTuple):
@@ -83,7 +89,7 @@ class Course(NamedTuple):
     halo : ndarray, shape (n,)
         Width of the band on each side in pixels; 0 where none is seen.
     around : ndarray, shape (n, 3)
-        Colour of the band, from 0 to 1.
+        Colour of the band, from 0 to 255.
     """
 
     place: Array
@@ -137,12 +143,12 @@ def _unlit_colors(actor: vtkActor, mesh: pv.PolyData, live: Live | None) -> Arra
         is_plain = is_plain and scene is not None and scene.material.ambient == 1
     mapper = actor.GetMapper()
     values = mesh.point_data.get(mapper.GetArrayName()) if is_plain else None
-    if not is_plain or (mapper.GetScalarVisibility() and (values is None or values.ndim > 1)):
+    if not is_plain or (mapper.GetScalarVisibility() and values is None):
         return None
     if not mapper.GetScalarVisibility():
         return 255 * np.tile(actor.GetProperty().GetColor(), (mesh.n_points, 1))
     plain = pv.convert_array(np.ascontiguousarray(values))
-    table = pv.convert_array(mapper.GetLookupTable().MapScalars(plain, 1, -1))
+    table = pv.convert_array(mapper.GetLookupTable().MapScalars(plain, mapper.GetColorMode(), -1))
     return np.asarray(table[:, :3], dtype=np.float64)
 
 
@@ -179,37 +185,55 @@ def course_of(lines: Lines, samples: Samples, bare: Samples, scale: int) -> Cour
     width = np.full(len(at), lines.width)
     if style.diameter is not None:
         width = np.maximum(style.diameter / footprint, LEAST)
-    # The depth of a stroke is nearer by its width, and changes along a line that is seen end on.
-    reach = BEHIND * width * footprint + 2 * np.abs(np.diff(distance, prepend=distance[:1]))
-    reach += LIFTED * np.linalg.norm(np.ptp(world, axis=0))
+    reach = 2 * np.abs(np.diff(distance, prepend=distance[:1]))
+    core = distance
+    if style.halo:
+        # The shader draws it nearer by its width, up to the near plane.
+        core = np.maximum(distance - width * footprint, camera.GetClippingRange()[0])
+        reach += ALIKE * width * footprint
+    else:
+        reach += BEHIND * width * footprint + LIFTED * np.linalg.norm(np.ptp(world, axis=0))
     place = np.stack([at[:, 0], samples.depth.shape[0] - at[:, 1]], axis=1)
     across = scale * _across(place, number[start])
     beside = (0.5 + 0.5 * style.halo) * width
-    covers = _over_surface(samples, bare, place, beside, across, renderer)
-    halo = style.halo * width * np.where(covers, 1.0, NARROW)
+    halo = NARROW * style.halo * width
     width = width * at[:, 3]
     # A surface on which a line lies hides part of its width, and must not make it dashed.
-    seen = distance - _distance(_read(samples.depth, place), camera) <= reach
+    seen = core - _distance(_read(samples.depth, place), camera) <= reach
+    band = 255 * np.array(color_of_halo(style, renderer))
     color: Array = np.zeros((len(place), samples.colors.shape[2]))
-    counts = np.zeros(len(place))
+    counts, is_near = np.zeros(len(place)), np.zeros(len(place), dtype=np.bool_)
     for part in ACROSS:
         side = place + part * width[:, np.newaxis] * across
         drawn = _read(samples.depth, side)
-        near = np.abs(distance - _distance(drawn, camera)) <= reach
+        near = np.abs(core - _distance(drawn, camera)) <= reach
         near &= drawn < _read(bare.depth, side)
-        color[near] += _read(samples.colors, side)[near]
+        is_near |= near
+        if style.halo:
+            # A thin part of a line is read beside it.
+            near[near] = _differs(samples, side[near], band)
+        color[near] += _read(samples.colors, side[near])
         counts += near
     mean = color / np.maximum(counts, 1)[:, np.newaxis]
+    # Light changes across a line: a place is read where all of its width is seen, if any is.
     color, colored = _continued(mean, counts > 0, number[start])
+    whole, is_whole = _continued(mean, counts == len(ACROSS), number[start])
+    color[is_whole] = whole[is_whole]
+    color[~colored] = band[: color.shape[1]]
     if lines.colors is not None:
         colors = lines.colors[ids][:, : color.shape[1]]
         color = colors[start] + along[:, np.newaxis] * (colors[start + 1] - colors[start])
-    seen &= colored & (width > THIN)
-    # Beneath other lines a wide one goes on: where its middle is hidden its border may be seen.
-    clear = distance - _distance(_read(bare.depth, place), camera) <= reach
-    clear &= colored & (width > BROAD)
-    seen |= clear & _near(seen, number[start], width + 1)
-    around = np.tile(color_of_halo(style, renderer), (len(place), 1))
+    if style.halo:
+        seen = is_near
+    # Each goes on beneath other lines, so that no ground shows between them.
+    clear = core - _distance(_read(bare.depth, place), camera) <= reach
+    seen |= clear & _near(seen, number[start], (width + 1) / 2)
+    seen &= (colored | is_near) & (width > THIN)
+    if style.halo:
+        away = beside[seen, np.newaxis] * across[seen]
+        is_shown = _has_halo(samples, bare, place[seen], away, band)
+        halo[seen] *= np.where(is_shown, 1 / NARROW, 1.0)
+    around = np.tile(band, (len(place), 1))
     return Course(place / scale, distance, number[start], ends, width, seen, color, halo, around)
 
 
@@ -224,18 +248,18 @@ def _near(seen: Bools, line: Indices, count: Array) -> Bools:
     return near
 
 
-def _over_surface(
-    samples: Samples, bare: Samples, place: Array, away: Array, across: Array, renderer: vtkRenderer
-) -> Bools:
-    """Return where the colour of the ground beside a line covers a surface."""
-    ground = 255 * np.array(renderer.GetBackground())[: samples.colors.shape[2]]
-    hides = np.zeros(len(place), dtype=np.bool_)
-    for sign in (-1, 1):
-        side = place + sign * away[:, np.newaxis] * across
-        color, other = _read(samples.colors, side), _read(bare.colors, side)
-        covers = np.all(np.abs(color - ground) < SAME, axis=1)
-        hides |= covers & np.any(np.abs(other - ground) >= SAME, axis=1)
-    return hides
+def _has_halo(samples: Samples, bare: Samples, place: Array, away: Array, band: Array) -> Bools:
+    """Return where the colour of a halo, on either side of a line, covers another."""
+    shown = np.zeros(len(place), dtype=np.bool_)
+    for side in (place - away, place + away):
+        shown |= ~_differs(samples, side, band) & _differs(bare, side, band)
+    return shown
+
+
+def _differs(samples: Samples, place: Array, band: Array) -> Bools:
+    """Return where samples have another colour than a halo."""
+    away = np.abs(_read(samples.colors, place) - band[: samples.colors.shape[2]])
+    return np.asarray(away.max(axis=1) >= SAME)
 
 
 def _projected(points: Array, renderer: vtkRenderer) -> Array:
@@ -295,15 +319,16 @@ def _across(place: Array, line: Indices) -> Array:
 
 
 def _continued(color: Array, full: Bools, line: Indices) -> tuple[Array, Bools]:
-    """Return colours with those of the place before, or of the first after, where none is found."""
-    where = np.where(full, np.arange(len(full)), -1)
-    before = np.maximum.accumulate(where) if len(where) else where
-    first = np.append(np.flatnonzero(full), -1)
-    after = first[np.minimum(np.searchsorted(first[:-1], np.arange(len(full))), len(first) - 1)]
-    same = (before >= 0) & (line[before] == line)
-    chosen = np.where(same, before, after)
-    valid = (chosen >= 0) & (line[chosen] == line)
-    return color[chosen], valid
+    """Return colours, between places of a line that have one, and where a line has any."""
+    at = np.arange(len(full))
+    before = np.maximum.accumulate(np.where(full, at, 0))
+    after = np.minimum.accumulate(np.where(full, at, len(full) - 1)[::-1])[::-1]
+    ahead = full[before] & (line[before] == line)
+    behind = full[after] & (line[after] == line)
+    first, last = np.where(ahead, before, after), np.where(behind, after, before)
+    share = (at - first) / np.maximum(last - first, 1)
+    mixed: Array = color[first] + share[:, np.newaxis] * (color[last] - color[first])
+    return mixed, ahead | behind
 
 
 def _read(picture: Array, place: Array) -> Array:
@@ -313,10 +338,11 @@ def _read(picture: Array, place: Array) -> Array:
     return picture[np.clip(at[:, 1], 0, rows - 1), np.clip(at[:, 0], 0, columns - 1)]
 
 
-def strokes_of(courses: Sequence[Course], error: float) -> Iterator[Polyline | Fill]:
-    """Yield strokes from the farthest to the nearest, each after its halo.
+def strokes_of(courses: Sequence[Course], error: float) -> tuple[list[Polyline | Fill], float]:
+    """Return strokes from the farthest to the nearest, and the largest error of their colours.
 
-    Those of several widths are their outlines.
+    A visible piece of a line has one halo, and over it a stroke for each run of like colours; those
+    of several widths are outlines. Pieces of a layer that look alike are one path.
 
     Parameters
     ----------
@@ -324,65 +350,106 @@ def strokes_of(courses: Sequence[Course], error: float) -> Iterator[Polyline | F
     error : float
         Largest difference of a colour, in 1/255.
     """
-    if not any(np.any(course.seen) for course in courses):
-        return
-    every = Course(*(np.concatenate(part) for part in zip(*courses, strict=True)))
-    line = np.repeat(np.arange(len(courses)), [len(course.line) for course in courses])
-    centres, label = nearest_colors(every.color[every.seen].astype(np.float32), error)
-    kind = np.full((len(line), 3), -1)
-    kind[every.seen, 0] = label
-    kind[:, 1], kind[:, 2] = line, every.line
-    begins = np.flatnonzero(np.append(True, np.any(np.diff(kind, axis=0) != 0, axis=1)))
-    begins = begins[every.seen[begins]]
-    changes = np.append(np.flatnonzero(np.any(np.diff(kind, axis=0) != 0, axis=1)), len(line) - 1)
-    finishes = changes[np.searchsorted(changes, begins)]
-    # Each reaches to the first place of the next, so that they join.
-    following = np.minimum(finishes + 1, len(line) - 1)
-    joined = np.all(kind[following, 1:3] == kind[begins, 1:3], axis=1) & every.seen[following]
-    joined &= following > finishes
-    finishes = np.where(joined, following, finishes)
-    kept = finishes > begins
-    begins, finishes = begins[kept], finishes[kept]
-    # One of one colour stays a stroke.
-    same = np.all(kind[begins - 1, 1:] == kind[begins, 1:], axis=1) & every.seen[begins - 1]
-    same &= begins > 0
-    wide = (every.width[begins] > BROAD) & (joined[kept] | same)
-    # Wide ones begin earlier, beneath the one before, so that no seam shows.
-    firsts = begins.copy()
-    for _ in range(EARLIER):
-        before = np.maximum(firsts - 1, 0)
-        same = every.seen[before] & np.all(kind[before, 1:] == kind[begins, 1:], axis=1)
-        firsts = np.where(wide & same, before, firsts)
-    spans = [np.arange(a, b + 1) for a, b in zip(firsts, finishes, strict=True)]
-    if not spans:
-        return
-    rows = np.concatenate(spans)
-    across = _across(every.place, LINES * line + every.line)
-    starts = np.append(0, np.cumsum(finishes - firsts + 1))
-    limit = np.full(len(rows), SEEN)
-    limit[starts[1:] - 1] = 1e-9
-    corners = simplified(np.column_stack([every.place, every.width / 2])[rows], starts, limit)
-    mean = np.add.reduceat(every.distance[rows], starts[:-1]) / np.diff(starts)
-    for run in np.argsort(-mean, kind="stable"):
-        span = slice(starts[run], starts[run + 1])
-        here = rows[span]
-        kept = here[corners[span]]
-        points, width = every.place[kept], every.width[kept]
-        red, green, blue = (centres[kind[begins[run], 0]] / 255).tolist()
-        # NumPy's own median takes longer than all else for a short stroke.
-        halo = float(np.sort(every.halo[here])[len(here) // 2])
-        around = tuple(every.around[here[0]].tolist())
-        side = across[kept]
-        if not wide[run] and width.max() <= ALIKE * width.min():
-            mean_width = float(every.width[here].sum() / len(here))
-            whole = bool(every.end[here[0]] and every.end[here[-1]])
-            if halo > 0:
-                yield Polyline(around, points, mean_width + 2 * halo)
-            yield Polyline((red, green, blue), points, mean_width, whole)
-        else:
-            if halo > 0:
-                yield Fill(around, [_outline(points, side, width + 2 * halo)])
-            yield Fill((red, green, blue), [_outline(points, side, width)])
+    if not any(np.any(each.seen) for each in courses):
+        return [], 0.0
+    lines = [
+        each._replace(
+            line=each.line + i * LINES, color=np.broadcast_to(each.color, (len(each.color), 3))
+        )
+        for i, each in enumerate(courses)
+    ]
+    every = Course(*(np.concatenate(part) for part in zip(*lines, strict=True)))
+    rows = np.flatnonzero(every.seen)
+    every = Course._make(part[rows] for part in every)
+    is_first = np.append(True, (np.diff(rows) != 1) | (np.diff(every.line) != 0))
+    pieces = np.append(np.flatnonzero(is_first), len(rows))
+    runs = _runs(every.color, pieces, RUN * error)
+    low, high = (each.reduceat(every.color, runs[:-1]) for each in (np.minimum, np.maximum))
+    colors, label = nearest_colors((low + high) / 2, (1 - RUN) * error)
+    # Edges are written in whole steps of colours.
+    color = np.rint(colors[label])
+    away = np.abs(every.color - np.repeat(color, np.diff(runs), axis=0))
+    style = operator.itemgetter(slice(-1))
+    limit = float(np.interp(error, *LIMITS))
+    parts = sorted(_parts(every, pieces, runs, color, limit), key=style)
+    items: list[Polyline | Fill] = []
+    for (_, _, rgb, width, ends), alike in itertools.groupby(parts, style):
+        paths = [part.corners for part in alike]
+        items.append(Polyline(rgb, paths, width, ends) if width else Fill(rgb, paths))
+    return items, float(away.max())
+
+
+class _StyledPath(NamedTuple):
+    """Line or, without a width, outline in a layer, over its halo or as one."""
+
+    layer: int
+    over: int
+    color: Color
+    width: float
+    round: bool
+    corners: Array
+
+
+def _parts(
+    every: Course, pieces: Indices, runs: Indices, color: Array, limit: float
+) -> Iterator[_StyledPath]:
+    """Yield the halos of pieces and the strokes of runs."""
+    layer = _layers(every, pieces)
+    piece = np.repeat(np.arange(len(layer)), np.diff(pieces))
+    across = _across(every.place, piece)
+    bent = np.column_stack([every.place, every.width / 2])
+    kept = simplified(bent, pieces, np.full(len(bent), limit))
+    for over, starts in enumerate((pieces, runs)):
+        for run, (begin, end) in enumerate(itertools.pairwise(starts.tolist())):
+            at = piece[begin]
+            # Runs reach beneath those beside them, so that no seam shows.
+            first, last = max(begin - over, pieces[at]), min(end - 1 + over, pieces[at + 1] - 1)
+            # NumPy's own median takes longer than all else for a short stroke.
+            halo = 0.0 if over else float(np.sort(every.halo[begin:end])[(end - begin) // 2])
+            if last == first or not (over or halo):
+                continue
+            inner = first + 1 + np.flatnonzero(kept[first + 1 : last])
+            corners = np.concatenate([[first], inner, [last]])
+            width = every.width[corners] + 2 * halo
+            rgb = rgb_of(color[run] if over else every.around[begin])
+            points, mean = every.place[corners], 0.0
+            if width.max() > EVEN * width.min():
+                points = _outline(points, across[corners], width)
+            else:
+                mean = float(np.mean(every.width[first : last + 1])) + 2 * halo
+                mean = round(mean, 1 if mean > 1 else 2)
+            is_whole = bool(over and mean and every.end[first] and every.end[last])
+            yield _StyledPath(int(layer[at]), over, rgb, mean, is_whole, points)
+
+
+def _runs(color: Array, starts: Indices, error: float) -> Indices:
+    """Return where runs of colours begin that are within an error of one, and the end of all."""
+    runs = []
+    for begin, end in itertools.pairwise(starts.tolist()):
+        while begin < end:
+            part = color[begin:end]
+            span = (np.maximum.accumulate(part) - np.minimum.accumulate(part)).max(axis=1)
+            runs.append(begin)
+            begin += int(np.searchsorted(span, 2 * error, "right"))
+    return np.array([*runs, starts[-1]])
+
+
+def _layers(every: Course, starts: Indices) -> Indices:
+    """Return the layers of pieces: those that may touch are in the order of their distances."""
+    reach = every.width / 2 + every.halo
+    side = max(float(reach.max()), 1.0)
+    corners = np.stack(np.meshgrid(*2 * [[-1, 0, 1]]), -1).reshape(-1, 1, 2)
+    cells = np.floor((every.place + corners * reach[:, np.newaxis]) / side).astype(np.int64)
+    cells -= cells.min(axis=(0, 1))
+    code = cells[..., 1] * (cells[..., 0].max() + 1) + cells[..., 0]
+    top = np.zeros(code.max() + 1, dtype=np.intp)
+    mean = np.add.reduceat(every.distance, starts[:-1]) / np.diff(starts)
+    layers = np.zeros(len(mean), dtype=np.intp)
+    for i in np.argsort(-mean, kind="stable"):
+        at = code[:, starts[i] : starts[i + 1]]
+        layers[i] = top[at].max() + 1
+        top[at] = layers[i]
+    return layers
 
 
 def _outline(points: Array, across: Array, width: Array) -> Array:

@@ -67,6 +67,24 @@ def actors_of(renderer: vtkRenderer) -> list[vtkActor]:
 
 
 @contextlib.contextmanager
+def without(props: Iterable[vtkProp]) -> Iterator[None]:
+    """Hide props while a plotter draws.
+
+    Parameters
+    ----------
+    props : iterable of vtkProp
+    """
+    visible = [prop for prop in props if prop.GetVisibility()]
+    for prop in visible:
+        prop.SetVisibility(False)
+    try:
+        yield
+    finally:
+        for prop in visible:
+            prop.SetVisibility(True)
+
+
+@contextlib.contextmanager
 def enlarged(plotter: pv.BasePlotter, scale: int, hidden: Sequence[vtkProp]) -> Iterator[None]:
     """Let a plotter draw several samples per pixel, each of one colour, and without some props.
 
@@ -86,7 +104,6 @@ def enlarged(plotter: pv.BasePlotter, scale: int, hidden: Sequence[vtkProp]) -> 
                    actor.GetProperty().GetPointSize()) for actor in actors]  # fmt: skip
     smoothed = [(renderer, renderer.GetPass(), renderer.GetUseFXAA())
                 for renderer in plotter.renderers]  # fmt: skip
-    visible = [prop for prop in hidden if prop.GetVisibility()]
     try:
         window.SetMultiSamples(0)
         for renderer, drawn_by, _ in smoothed:
@@ -96,15 +113,12 @@ def enlarged(plotter: pv.BasePlotter, scale: int, hidden: Sequence[vtkProp]) -> 
         for style, width, point in properties:
             style.SetLineWidth(scale * width)
             style.SetPointSize(scale * point)
-        for prop in visible:
-            prop.SetVisibility(False)
         window.SetSize(scale * size[0], scale * size[1])
-        yield
+        with without(hidden):
+            yield
     finally:
         window.SetSize(*size)
         window.SetMultiSamples(multisamples)
-        for prop in visible:
-            prop.SetVisibility(True)
         for style, width, point in properties:
             style.SetLineWidth(width)
             style.SetPointSize(point)
@@ -115,12 +129,14 @@ def enlarged(plotter: pv.BasePlotter, scale: int, hidden: Sequence[vtkProp]) -> 
         window.Render()
 
 
-def samples_of(plotter: pv.BasePlotter) -> Samples:
+def samples_of(plotter: pv.BasePlotter, *, fine: bool = True) -> Samples:
     """Return the present picture of a plotter, sample by sample.
 
     Parameters
     ----------
     plotter : pyvista.Plotter
+    fine : bool, default: True
+        Whether channels have 24 bits, for each of which the picture is drawn once more.
     """
     window = plotter.render_window
     assert window is not None
@@ -134,11 +150,11 @@ def samples_of(plotter: pv.BasePlotter) -> Samples:
     colors = coarse[..., : 1 if gray else 3].astype(np.float32)
     every = [prop for renderer in plotter.renderers for prop in _props(renderer)]
     # Bytes of a value do not blend.
-    if not any(prop.HasTranslucentPolygonalGeometry() for prop in every):
+    if fine and not any(prop.HasTranslucentPolygonalGeometry() for prop in every):
         actors = [actor for renderer in plotter.renderers for actor in actors_of(renderer)]
-        for channel, fine in enumerate(_packed(plotter, actors, colors.shape[2])):
-            near = np.abs(fine - colors[..., channel]) <= ROUNDING
-            colors[..., channel][near] = fine[near]
+        for channel, exact in enumerate(_packed(plotter, actors, colors.shape[2])):
+            near = np.abs(exact - colors[..., channel]) <= ROUNDING
+            colors[..., channel][near] = exact[near]
     return Samples(colors, depth)
 
 
