@@ -56,7 +56,9 @@ def turned(degrees):
     return pv.MultiBlock([lit, lines])
 
 
-panels = [render.Panel(turned(angle), "rgb", f"turned by {angle}°") for angle in (0, 20, 45, 70, 90)]
+panels = [
+    render.Panel(turned(angle), "rgb", f"turned by {angle}°") for angle in (0, 20, 45, 70, 90)
+]
 meshes = pv.MultiBlock([block for panel in panels for block in panel.mesh])
 camera = render.camera_on(meshes, (0.5, -1, 0.7), aspect=0.9, zoom=0.86)
 # A key of the phase, which faces the eye.
@@ -70,7 +72,13 @@ panels.append(render.Panel(ring, "rgb", "phase of w"))
 look = {"rows": 2, "size": (1650, 1240), "background": "white", "line_width": 1.5}
 plotter = render.make_plotter(panels, camera=camera, **look)
 places = [1.5 * (np.cos(turn) * right + np.sin(turn) * up) for turn in np.arange(4) * np.pi / 2]
-words = {"shape": None, "show_points": False, "font_size": 26, "bold": False, "always_visible": True}
+words = {
+    "shape": None,
+    "show_points": False,
+    "font_size": 26,
+    "bold": False,
+    "always_visible": True,
+}
 words["text_color"] = "black"
 words |= {"justification_horizontal": "center", "justification_vertical": "center"}
 plotter.add_point_labels(np.array(places), ["0", r"$\pi/2$", r"$\pi$", r"$-\pi/2$"], **words)

@@ -135,9 +135,6 @@ class _Export:
             pages = []
             for renderer in self.plotter.renderers:
                 title = _title(renderer)
-                # Beside views with titles, one without holds a key.
-                if len(self.plotter.renderers) > 1 and not title:
-                    continue
                 if _export(self.plotter, renderer, path, title):
                     pages.append((title, path.read_text("utf-8")))
         if not pages:
