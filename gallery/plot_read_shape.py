@@ -36,6 +36,7 @@ plotter.camera = camera
 plotter.enable_anti_aliasing("ssaa")
 plotter.subplot(0, 2)
 plotter.vizlight.add_key(scene, size=0.2)
+plotter.subplot(0, 1)
 plotter.show(auto_close=False)
 
 # %%

@@ -34,10 +34,10 @@ plotter.camera = camera
 plotter.enable_anti_aliasing("ssaa")
 plotter.subplot(1, 1)
 plotter.vizlight.add_key(scene, question="slope", exponent=2, size=0.25)
+plotter.subplot(1, 0)
 plotter.show(auto_close=False)
 
 # %%
 # What can be read in this light:
 
-plotter.subplot(1, 0)
 print(vizlight.legibility(fibres, scene, view=plotter.camera, **look))
