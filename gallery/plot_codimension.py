@@ -36,8 +36,7 @@ for exponent in (1, "compensated"):
         title = f"{'curve' if k == 1 else 'surface'} in {n}-space, exponent {p:.3g}\n"
         title += f"mean {mean:.2f}, contrast {mesh['luminance'].std() / mean:.2f}"
         panels.append(render.Panel(mesh if k == 2 else pv.MultiBlock([below, mesh]), "rgb", title))
-room = (*below.bounds[:5], below.bounds[5] + 0.7)  # for titles
-camera = render.camera_on(room, (0.25, -1, 0.85), aspect=1, zoom=1.38)
+camera = render.camera_on((*below.bounds[:5], below.bounds[5] + 0.7), (0.25, -1, 0.85), zoom=1.38)
 look = {"rows": 2, "size": (1800, 840), "background": ground, "line_diameter": 0.03, "halo": 0.3}
 plotter = render.make_plotter(panels, camera=camera, **look)
 plotter.show()

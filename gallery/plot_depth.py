@@ -35,8 +35,8 @@ plotter = render.make_plotter(panels, size=(1300, 1000), **look)
 plotter.show()
 
 # %%
-# Ambient light reaches all points alike: :math:`I_a` is that of the scene, and :math:`k_a` the share
-# of it that the material reflects.
+# Ambient light reaches all points alike: :math:`I_a` is that of the scene, and :math:`k_a` the
+# share of it that the material reflects.
 
 ball = pv.Sphere(radius=1, theta_resolution=120, phi_resolution=120)
 lamp, view = Light(direction=(-0.7, 0.8, 0.9), intensity=1.1), View(direction=(0, 0, 1))

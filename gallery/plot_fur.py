@@ -19,20 +19,8 @@ x, y, z = np.asarray(dog.points).T
 length = np.interp(x, [-0.7, -0.4, -0.2, 0.15, 0.25, 0.3], [0.06, 0.045, 0.03, 0.045, 0.022, 0.008])
 dog["length"] = length * np.interp(z, [0, 0.3, 0.45, 0.62, 0.66, 0.7], [0.3, 0.5, 1, 1, 0.5, 0.3])
 dog["length"] = np.where((x > 0.34) & (z < 0.645), 0.002, dog["length"])
-
-
-def bare(points):
-    """Return where eyes, nose, and tongue are."""
-    x, y, z = np.asarray(points).T
-    eye = np.linalg.norm([x - 0.361, np.abs(y) - 0.019, z - 0.705], axis=0) < 0.013
-    nose = np.linalg.norm([x - 0.464, y, z - 0.668], axis=0) < 0.02
-    return eye, nose, (x > 0.37) & (np.abs(z - 0.614) < 0.014) & (np.abs(y) < 0.02)
-
-
-dog["length"] = np.where(np.any(bare(dog.points), axis=0), 0, dog["length"])
-# Hair lies back, down along the legs, and up along the ears.
+# Hair lies back, and down along the legs.
 dog["lie"] = np.stack([-1.0 + 0 * x, 0.2 * np.sign(y), -0.6 + 0 * x], axis=1)
-dog["lie"] = np.where(z[:, np.newaxis] > 0.725, [-0.2, 0, 1], dog["lie"])
 camera = render.camera_on((0.08, 0.46, -0.1, 0.1, 0.47, 0.81), (1, -1, 0.2), aspect=1.3, zoom=1.4)
 scene = Scene(
     lights=[Light(direction=(1.1, -0.7, 1.2)), Light(direction=(-0.8, 0.9, 0.6), intensity=1.2)],
@@ -47,8 +35,6 @@ for part, own in (("fibres", np.repeat(shade, 7, axis=0)), ("skin", 1)):
     x, y, z = np.asarray(coat[part].points).T
     dark = np.interp(x, [0.36, 0.43], [1, 0.5]) * np.interp(z, [0.68, 0.78], [1, 0.5])
     coat[part]["coat"] = coat[part]["rgb"] * dark[:, np.newaxis] * own
-    for place, tint in zip(bare(coat[part].points), (0.12, 0.3, (0.9, 0.65, 0.9)), strict=True):
-        coat[part]["coat"][place] *= tint
 look = {"size": (1300, 1000), "background": "#14181d", "line_width": 1}
 plotter = render.make_plotter(render.Panel(coat, "coat"), camera=camera, **look)
 plotter.show()

@@ -58,7 +58,7 @@ for row, (name, factor) in enumerate(rows.items()):
 show(balls, (-4.5, 10.1, -12.3, 2.1, 0, 0), labels, (1220, 1200))
 
 # %%
-# Three shapes under a lamp 45 degrees from the eye: with four times the power both models look
+# Three shapes under a lamp 45 degrees from the eye, by powers beside the rows: both models look
 # alike.
 
 turn, down = np.meshgrid(np.linspace(0, 2 * np.pi, 400), np.linspace(1e-9, 1, 120))

@@ -9,23 +9,20 @@ the study *strokes* measures all six. LIC and evenly spaced lines are read bette
 has no key to the direction. Both together are in the example *The winds of July*.
 """
 
-import numpy as np
 import pyvista as pv
 from vtkmodules.vtkRenderingLICOpenGL2 import vtkSurfaceLICMapper
 
 from vizlight import Scene, load_example, presets, render, streamlines
 
-wind, eye = load_example("winds_of_july.vtp"), np.array([0.42, 1, 0.1])
-arrows = wind.glyph(orient="wind", scale=False, factor=0.09, tolerance=0.045)
-lines = streamlines(wind, tangents="wind", spacing=0.06).scale(1.005)
+wind = load_example("winds_of_july.vtp")
 # Strokes at the limb are crowded.
-arrows, lines = (strokes.clip(eye, origin=0.45 * eye, invert=False) for strokes in (arrows, lines))
+limb = {"normal": (0.42, 1, 0.1), "origin": (0.19, 0.45, 0.045), "invert": False}
+arrows = wind.glyph(orient="wind", scale=False, factor=0.09, tolerance=0.045).clip(**limb)
+lines = streamlines(wind, tangents="wind", spacing=0.06).scale(1.005).clip(**limb)
 lic = pv.Actor(mapper=vtkSurfaceLICMapper(input_data_object=wind, scalar_visibility=False))
-lic.prop.ambient = 0.4
 hue, field = presets.direction(), {"tangents": "wind", "exponent": 2}
 
-size = {"window_size": (1900, 1060), "shape": (2, 4), "col_weights": (1, 1, 1, 0.45)}
-plotter = pv.Plotter(off_screen=True, border=False, **size)
+plotter = pv.Plotter(off_screen=True, shape=(2, 4), col_weights=(1, 1, 1, 0.45), border=False)
 ways = {
     "plain: 42": lambda: None,
     "arrows: 18": lambda: plotter.add_mesh(arrows, color="black"),
@@ -39,11 +36,7 @@ for number, (title, draw) in enumerate(ways.items()):
     plotter.add_mesh(wind.scale(0.995), color="lightsteelblue", smooth_shading=True)
     draw()
     plotter.add_text(f"\n{title}°", position="upper_edge", color="black", font_size=11)
-    plotter.camera = render.camera_on(wind.bounds, eye, zoom=1.32)
+    plotter.camera = render.camera_on(wind.bounds, limb["normal"], zoom=1.32)
 plotter.subplot(1, 3)
-plotter.add_mesh(presets.key(hue, exponent=2), scalars="rgb", rgb=True, lighting=False)
-plotter.add_text("direction\non the screen", position=(0.2, 0.2), viewport=True, font_size=11)
-plotter.view_xy()
-plotter.camera.zoom(1.2)
-plotter.enable_anti_aliasing("msaa", multi_samples=8)
-plotter.show()
+plotter.vizlight.add_key(hue, exponent=2)
+plotter.show(window_size=(1900, 1060))

@@ -35,11 +35,8 @@ plotter.vizlight.add_mesh(lit)
 plotter.camera = camera
 plotter.enable_anti_aliasing("ssaa")
 plotter.subplot(0, 2)
-plotter.add_mesh(presets.key(scene), scalars="rgb", rgb=True, lighting=False)
-plotter.add_text(
-    "the way\nit faces", position=(0.27, 0.3), viewport=True, color="white", font_size=11
-)
-plotter.view_xy()
+plotter.vizlight.add_key(scene, size=0.2)
+plotter.subplot(0, 1)
 plotter.show(auto_close=False)
 
 # %%

@@ -18,7 +18,7 @@ fibres = vizlight.load_example("fibre_bundle.vtp")
 scene = presets.slope().replace(material=Material(ambient=0.12, diffuse=0.88, specular=0))
 look = {"line_diameter": 0.2, "exponent": 2}
 
-size = {"window_size": (1500, 1200), "shape": (2, 2), "col_weights": (1, 0.13)}
+size = {"window_size": (1500, 1200), "shape": (2, 2), "col_weights": (1, 0.15)}
 plotter = pv.Plotter(off_screen=True, border=False, **size)
 plotter.set_background("#14181d", all_renderers=True)
 words = {"position": "upper_edge", "color": "white", "font_size": 12}
@@ -33,17 +33,11 @@ plotter.add_text("\nvizlight: one lamp at the eye", **words)
 plotter.camera = camera
 plotter.enable_anti_aliasing("ssaa")
 plotter.subplot(1, 1)
-bar = presets.key(scene, question="slope", exponent=2).rotate_z(90)
-plotter.add_mesh(bar, scalars="rgb", rgb=True, lighting=False)
-words = {"shape": None, "show_points": False, "font_size": 18, "text_color": "white"}
-words |= {"justification_horizontal": "center", "justification_vertical": "center"}
-plotter.add_point_labels([(0.0, 1.2, 0), (0, -1.2, 0)], ["toward you", "across"], **words)
-plotter.view_xy()
-plotter.camera.zoom(1.3)
+plotter.vizlight.add_key(scene, question="slope", exponent=2, size=0.25)
+plotter.subplot(1, 0)
 plotter.show(auto_close=False)
 
 # %%
 # What can be read in this light:
 
-plotter.subplot(1, 0)
 print(vizlight.legibility(fibres, scene, view=plotter.camera, **look))

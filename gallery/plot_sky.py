@@ -64,9 +64,5 @@ for column, (name, (mesh, toward)) in enumerate(shown.items()):
         found = vizlight.legibility(own, light, view=camera).shape
         print(f"{name}, {what}: {found.median:.1f} degrees, {found.bits:.1f} bits")
 plotter.subplot(1, 4)
-plotter.add_mesh(presets.key(scene), scalars="rgb", rgb=True, lighting=False)
-plotter.add_text(
-    "the way\nit faces", position=(0.3, 0.27), viewport=True, color="white", font_size=11
-)
-plotter.view_xy()
+plotter.vizlight.add_key(scene)
 plotter.show()

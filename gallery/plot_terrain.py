@@ -20,14 +20,8 @@ relief = load_example("hawaii.vti").resample(6.0, interpolation="bspline")
 sun = Light(direction=(-0.87, 0.25, 0.42), color="#ffc080", intensity=1.1)
 blue = Light(direction=(0.48, -0.14, 0.87), color="#80b8ff", intensity=0.6)
 scene = Scene(lights=[sun, blue], material=Material(ambient=0.4, diffuse=0.85, specular=0))
-options = {
-    "elevation": "elevation",
-    "exaggeration": 9,
-    "depth": 1500,
-    "angular_diameter": 0.06,
-    "samples": 8,
-}
-lit = relief_shadow(relief, scene, lit=True, occlusion="sky", **options)
+options = {"elevation": "elevation", "exaggeration": 9, "depth": 1500, "samples": 8}
+lit = relief_shadow(relief, scene, angular_diameter=0.06, lit=True, occlusion="sky", **options)
 lit = tint(lit, "elevation", cmap=tints, clim=(-6000, 3000))
 ground = lit.warp_by_scalar("elevation", factor=9)
 

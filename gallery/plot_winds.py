@@ -22,8 +22,7 @@ ball = np.cos(north) * np.cos(east), np.cos(north) * np.sin(east), np.sin(north)
 coast.points = 1.003 * np.stack(ball, axis=1)
 lines, eye = vizlight.streamlines(air, tangents="wind", spacing=0.05).scale(1.005), (0.42, 1, 0.1)
 # Lines at the limb are crowded.
-limb = {"normal": eye, "origin": np.multiply(eye, 0.5), "invert": False}
-lines, coast = lines.clip(**limb), coast.clip(**limb)
+lines, coast = (x.clip(eye, origin=np.multiply(eye, 0.5), invert=False) for x in (lines, coast))
 scene, even = presets.direction(), Scene(material=Material(ambient=1, diffuse=0, specular=0))
 
 plotter = pv.Plotter(off_screen=True, window_size=(1600, 1200))
@@ -34,8 +33,8 @@ plotter.vizlight.add_mesh(lines, scene=even, color="#202028", line_diameter=0.00
 plotter.vizlight.add_key(scene, exponent=2, size=0.22)
 plotter.camera = render.camera_on(air.bounds, eye, zoom=1.6)
 places = np.array([[0.9, 0.42, 0.02], [0.18, 0.93, 0.34]])
-look = {"shape": None, "show_points": False, "font_size": 24, "text_color": "white", "shadow": True}
-plotter.add_point_labels(places, ["AFRICA", "INDIA"], always_visible=True, **look)
+look = {"shape": None, "show_points": False, "font_size": 24, "text_color": "white"}
+plotter.add_point_labels(places, ["AFRICA", "INDIA"], always_visible=True, shadow=True, **look)
 plotter.enable_anti_aliasing("ssaa")
 plotter.show()
 

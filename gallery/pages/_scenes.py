@@ -64,10 +64,10 @@ SECTIONS = {
     },
     "What is there in 4-space?": {
         "plot_codimension": "Eight tori and curves on tori, uncompensated and compensated",
-        "plot_complex_curve": "Graph of a complex function at four steps of a turn",
+        "plot_complex_curve": "Graph of a complex function at five steps of a turn",
     },
     "How does it move?": {
-        "plot_turning": "Three tori of linked circles turn inside out, bright across the view",
+        "plot_turning": "Three tori of linked circles at six steps of a turn, bright across the view",
         "plot_streaklines": "Smoke rolls up in vortices that drift to the right",
     },
 }
@@ -85,22 +85,22 @@ FIRST = (
 #: thumbnails show the whole.
 PARTS = {
     "plot_bas_relief": (0.03, 0.05, 0.47, 0.45),
-    "plot_codimension": (0.0, 0.57, 0.5, 0.93),
-    "plot_complex_curve": (0.2, 0.02, 0.82, 0.98),
+    "plot_codimension": (0.0, 0.6, 0.5, 1.0),
+    "plot_complex_curve": (0.67, 0.03, 1.0, 0.47),
     "plot_depth": (0.5, 0.06, 1.0, 0.7),
     "plot_highlights": (0.23, 0.06, 0.99, 0.37),
-    "plot_isoluminance": (0.25, 0.56, 0.5, 1.0),
+    "plot_isoluminance": (0.24, 0.56, 0.46, 1.0),
     "plot_principal_lines": (0.5, 0.07, 1.0, 0.93),
-    "plot_read_direction": (0.67, 0.53, 1.0, 1.0),
+    "plot_read_direction": (0.6, 0.54, 0.85, 0.97),
     "plot_read_heading": (0.05, 0.12, 0.86, 0.9),
-    "plot_read_shape": (0.5, 0.08, 0.94, 0.92),
+    "plot_read_shape": (0.45, 0.08, 0.88, 0.92),
     "plot_read_slope": (0.05, 0.55, 0.87, 0.97),
     "plot_read_value": (0.5, 0.06, 1.0, 0.82),
     "plot_satin": (0.5, 0.53, 1.0, 0.97),
     "plot_seeping_light": (0.67, 0.06, 1.0, 0.8),
-    "plot_sky": (0.5, 0.55, 0.75, 1.0),
+    "plot_sky": (0.47, 0.55, 0.68, 0.97),
     "plot_turning": (0.68, 0.55, 1.0, 1.0),
-    "plot_terrain_day": (0.69, 0.06, 0.98, 0.44),
+    "plot_terrain_day": (0.64, 0.04, 0.88, 0.46),
 }
 
 #: Width of the thumbnails of movies in pixels.
@@ -135,9 +135,6 @@ class _Export:
             pages = []
             for renderer in self.plotter.renderers:
                 title = _title(renderer)
-                # Beside views with titles, one without holds a key.
-                if len(self.plotter.renderers) > 1 and not title:
-                    continue
                 if _export(self.plotter, renderer, path, title):
                     pages.append((title, path.read_text("utf-8")))
         if not pages:

@@ -239,3 +239,32 @@ def test_pictures_have_keys():
 )  # fmt: skip
 def test_names_in_capitals_are_as_they_are(name, words):
     assert margins.written(name) == words
+
+
+def test_a_key_in_a_view_without_data_stands_in_its_middle():
+    plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=(600, 300), border=False)
+    plotter.set_background("black", all_renderers=True)
+    plotter.add_mesh(pv.Sphere(), color="black", lighting=False)
+    plotter.subplot(0, 1)
+    plotter.vizlight.add_key(presets.shape(), size=0.5)
+    picture = plotter.screenshot(return_img=True).max(axis=2)
+    plotter.close()
+    columns, rows = np.flatnonzero(picture.any(axis=0)), np.flatnonzero(picture.any(axis=1))
+    assert columns[0] > 300
+    assert abs(columns[[0, -1]].mean() - 450) < 3
+    # The disc has its words below it.
+    assert abs(rows[[0, -1]].mean() - 150) < 12
+
+
+def test_the_rim_of_a_disc_is_a_smooth_circle():
+    plotter = pv.Plotter(off_screen=True, window_size=(300, 300), border=False)
+    plotter.set_background("black")
+    white = vizlight.Scene(material=vizlight.Material(ambient=1, diffuse=0, specular=0))
+    plotter.vizlight.add_key(white, question="shape", size=0.5)
+    picture = plotter.screenshot(return_img=True)[:, :, 0] / 255
+    plotter.close()
+    top = np.flatnonzero(picture.max(axis=1))[0]
+    disc = picture[top : top + 153]
+    # Half of the pixel in which it fades belongs to it.
+    assert disc.sum() == pytest.approx(np.pi * 75.5**2, rel=0.003)
+    assert np.sum((disc > 0.05) & (disc < 0.95)) > 300

@@ -385,3 +385,17 @@ def test_what_draws_is_found_out_once_for_each_setting(monkeypatch, tmp_path):
         with pytest.raises(backends.BackendError):
             backends.choose_backend("egl")
     assert asked == ["egl"] * 4
+
+
+def test_a_bar_beside_several_panels_takes_the_width_of_none():
+    lit = vizlight.illuminate(pv.Sphere(), vizlight.Scene())
+    plotter = render.make_plotter([lit, lit, lit, lit], rows=2, bar="luminance", size=(500, 300))
+    views = [renderer.GetViewport() for renderer in plotter.renderers]
+    bars = [
+        any(prop.IsA("vtkScalarBarActor") for prop in renderer.actors.values())
+        for renderer in plotter.renderers
+    ]
+    plotter.close()
+    widths = np.array([right - left for left, _, right, _ in views])
+    assert np.ptp(widths[np.logical_not(bars)]) < 1e-9
+    assert widths[bars] == pytest.approx(render.BAR_COLUMN * widths[0])

@@ -254,7 +254,8 @@ class Component:
         """Draw the key of the light, with its words, in a margin beside the data.
 
         The margin is at the right of a picture that is wider than tall, else below; several keys
-        stack there. The data are drawn in the rest of the picture.
+        stack there. The data are drawn in the rest of the picture. In a subplot without data, which
+        a key of several views may have, it stands in the middle.
 
         Parameters
         ----------

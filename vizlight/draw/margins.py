@@ -135,8 +135,13 @@ class Margin:
             )  # fmt: skip
             head = top - bool(title) * band_share((width, height)) * (top - bottom)
             split = left + share_x * (right - left), head - share_y * (top - bottom)
-            renderer.SetViewport(left, split[1], split[0], head)
-            beside = share_x < 1
+            # A view without data is that of its keys.
+            alone, short = renderer.GetActors().GetNumberOfItems() == 0, min(width, height)
+            if alone:
+                split, short = (left, bottom), min(wide, high)
+            else:
+                renderer.SetViewport(left, split[1], split[0], head)
+            beside = share_x < 1 or alone
             strip = (split[0], bottom, right, head) if beside else (left, bottom, right, split[1])
             self._strip.SetViewport(*strip)
             self._strip.SetDraw(strip[3] > strip[1])
@@ -145,11 +150,10 @@ class Margin:
             room = (strip[2] - strip[0]) * wide, (strip[3] - strip[1]) * high
             if self._keys[0].lies:
                 self._split = split[1]
-            elif beside and len(self._keys) == 1 and self._keys[0].is_bar:
-                rows = _box_of(renderer, data=True)[[1, 3]]
-                self._beside(room, min(width, height), rows)
+            elif beside and not alone and len(self._keys) == 1 and self._keys[0].is_bar:
+                self._beside(room, short, _box_of(renderer, data=True)[[1, 3]])
             elif self._strip.GetDraw():
-                self._stack(room, min(width, height), beside=beside)
+                self._stack(room, short, beside=beside)
         self._entitle(renderer, title, (width, height))
         _, bottom, end, upper = self._strip.GetViewport()
         if _is_map(renderer) and upper > bottom and end > renderer.GetViewport()[2]:

@@ -214,10 +214,11 @@ def make_plotter(
     with window_class(choose_backend(backend)):
         # A bar beside several panels has a column of its own.
         beside = bool(bar) and len(shown) > 1
+        weights: Foreign = [1.0] * columns + [BAR_COLUMN] * beside
+        groups: Foreign = [(slice(None), columns)] if beside else None
         plotter = pv.Plotter(
             off_screen=True, window_size=pixels, border=False, shape=(rows, columns + beside),
-            col_weights=[1.0] * columns + [BAR_COLUMN] * beside,
-            groups=[(slice(None), columns)] if beside else None,
+            col_weights=weights, groups=groups,
         )  # fmt: skip
     if anti_aliasing == "auto":
         anti_aliasing = "ssaa" if any(map(has_lines_only, meshes)) else "msaa"
@@ -254,7 +255,7 @@ def make_plotter(
                 plotter.subplot(0, columns)
                 plotter.background_color = back
                 width, left = 0.1 / BAR_COLUMN, 0.2
-            scalar_bar = plotter.add_scalar_bar(
+            scalar_bar = plotter.add_scalar_bar(  # type: ignore[call-arg]
                 title=f"{bar}\n", mapper=mapper, color=ink, n_labels=3, fmt="%.1f", vertical=True,
                 height=0.7, width=width, position_x=left, position_y=0.12,
             )  # fmt: skip
