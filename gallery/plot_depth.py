@@ -23,7 +23,7 @@ scene = Scene(
     material=Material(ambient=0.4, diffuse=0.6, color=(1.0, 0.86, 0.6)),
 )
 dark = "#14181d"
-fog = DepthCue(front=37, back=50, cue=1.0, color=dark, smooth=True)
+fog = DepthCue(front=42, back=56, cue=1.0, color=dark, smooth=True)
 panels = []
 for title, cue in (("without depth cue", None), ("with depth cue", fog)):
     lines = vizlight.streamlines(

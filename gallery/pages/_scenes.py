@@ -67,7 +67,7 @@ SECTIONS = {
         "plot_complex_curve": "Graph of a complex function at five steps of a turn",
     },
     "How does it move?": {
-        "plot_turning": "Three tori of linked circles at six steps of a turn, bright across the view",
+        "plot_turning": "Three tori of linked circles in six steps of a turn, bright across it",
         "plot_streaklines": "Smoke rolls up in vortices that drift to the right",
     },
 }
