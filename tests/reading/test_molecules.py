@@ -135,12 +135,27 @@ def test_records_of_a_file_tell_its_helices_and_strands(tmp_path):
     kinds = np.zeros(49)
     kinds[10:20], kinds[24:30] = 1, 2
     np.testing.assert_array_equal(atoms["secondary_structure"], kinds)
-    flags = {0: "other", 1: "helix", 2: "strand"}
+    flags = {0: "loop", 1: "helix", 2: "strand"}
     assert meaning.flags(atoms, "secondary_structure") == flags
     solid = molecules.backbone(atoms)
     axis = solid.points[:, 2] - 1.5 * (solid["residue"] - 1)
     wide = [np.abs(axis[(solid["residue"] == i) & (solid["chain"] == 0)]).max() for i in (5, 15)]
     assert wide[0] < 1.2 < wide[1]
+
+
+@pytest.mark.parametrize(
+    ("compound", "name"),
+    [
+        ("COMPND    UBIQUITIN\n", "Ubiquitin"),
+        ("COMPND    MOL_ID: 1;\nCOMPND   2 MOLECULE: HIV-1 PROTEASE;\n", "HIV-1 protease"),
+        ("COMPND    MOL_ID: 1;\nCOMPND   2 MOLECULE: A;\nCOMPND   3 MOLECULE: B;\n", "a"),
+    ],
+)
+def test_a_chain_has_the_name_of_its_molecule_and_the_colors_of_its_fold(compound, name, tmp_path):
+    path = written(tmp_path, compound + HELIX + "".join(helix(80, "A")), "a.pdb")
+    look = vizlight.look(path)
+    assert look.array == "secondary_structure"
+    assert look.key[0]["title"] == f"{name}, secondary_structure"
 
 
 def test_records_of_cif_are_those_of_pdb(tmp_path):

@@ -42,6 +42,8 @@ _FORMULAS = (
 BACKBONE, LONG = "backbone_mask", 60
 #: Mark of the oxygen of an amino acid, and its largest distance in angstroms from its carbon.
 OXYGEN, _NEAR = 2, 3.0
+#: Length from which a word of a name is no abbreviation.
+_SPELLED = 6
 #: Name of the kinds of secondary structure of which a file tells.
 STRUCTURE = "secondary_structure"
 #: Atomic number of the atoms of backbones of proteins.
@@ -117,7 +119,7 @@ def of_pdb(path: Path) -> pv.PolyData:
             atoms.append(line)
             places.append([float(column) for column in columns])
     elements = [_element(line) for line in atoms]
-    mesh = joined(elements, places)
+    mesh = joined(elements, places, name=_compound(lines))
     for name, (first, last, none) in _NUMBERS.items():
         words = [line[first:last].strip() for line in atoms]
         try:
@@ -142,6 +144,17 @@ def _name(columns: str, residue: str) -> str:
     in that column.
     """
     return columns.strip() if columns.startswith(" ") or residue in _OF_CHAINS else columns
+
+
+def _compound(lines: Sequence[str]) -> str:
+    """Return the name of the only molecule of a file, in lower case but for short words."""
+    text = " ".join(line[10:70].strip() for line in lines if line.startswith("COMPND"))
+    names = re.findall(r"MOLECULE: *([^;]+)", text) if "MOL_ID" in text else [text]
+    if len(names) != 1:
+        return ""
+    words = (word if len(word) < _SPELLED else word.lower() for word in names[0].split())
+    name = " ".join(words)
+    return name[:1].upper() + name[1:]
 
 
 def _records(lines: Sequence[str]) -> list[tuple[str, int, int, int]]:
@@ -285,11 +298,13 @@ def attach_chains(
             ]
             kinds[inside] = kind
         mesh.point_data[STRUCTURE] = kinds
-        said.add_kinds(STRUCTURE, [(i, name, ()) for i, name in enumerate(ribbons.NAMES)])
+        kinds_of_fold = zip(ribbons.NAMES, ribbons.COLORS, strict=True)
+        said.add_kinds(STRUCTURE, [(i, *each) for i, each in enumerate(kinds_of_fold)])
     meaning.attach(mesh, said)
     if is_polymer(mesh):
         # Among thousands of atoms elements tell nothing of the fold.
-        mesh.set_active_scalars("chain" if len(every) > 1 else "residue")
+        of_fold = STRUCTURE if np.any(mesh.point_data.get(STRUCTURE, 0)) else "residue"
+        mesh.set_active_scalars("chain" if len(every) > 1 else of_fold)
 
 
 def is_polymer(mesh: pv.DataSet) -> bool:

@@ -10,7 +10,9 @@ from vizlight._types import Array, Bools, Indices
 
 #: Kinds of secondary structure: none of the others, a helix, a strand of a sheet.
 LOOP, HELIX, STRAND = 0, 1, 2
-NAMES = "other", "helix", "strand"
+#: Their names, and colours of which that of loops stands back.
+NAMES = "loop", "helix", "strand"
+COLORS = (0.78, 0.78, 0.76), (0.82, 0.26, 0.33), (0.22, 0.47, 0.72)
 #: Distances in angstroms of a carbon from the second, third and fourth after it, the angle of three
 #: and the torsion of four in degrees, each with its tolerance (P-SEA).
 _SHAPES = {

@@ -228,13 +228,18 @@ def molecule(case: Case, size: float = 1.0) -> Drawing:
         frame = wishes.camera(both, balls_and_sticks.eye(solid))
         balls_and_sticks = replace(balls_and_sticks, wishes=replace(wishes, frame=frame))
     drawing = surfaces.values(balls_and_sticks)
-    said = meaning.of(atoms.run()).arrays.get(array.name, {})
-    title = said.get(molecules.NAME) or file_named(atoms)
+    title = _molecule_named(atoms)
     keys = drawing.keys
     if array.name == "atom_type" and title:
         # Symbols of elements need no title.
         keys = [key | {"title": title} for key in keys]
     return replace(drawing, layers=[*drawing.layers, *case.strokes([cell])], keys=keys)
+
+
+def _molecule_named(atoms: Step) -> str:
+    """Return the name of a molecule, or that of its file, empty where neither is known."""
+    said = meaning.of(atoms.run()).arrays.get("atom_type", {})
+    return said.get(molecules.NAME) or file_named(atoms)
 
 
 def _cell(atoms: Step) -> Step | None:
@@ -274,7 +279,9 @@ def backbone(case: Case) -> Drawing:
     # A fold is seen from one side, whatever its values are.
     frame = wishes.camera(whole, chains.eye(solid))
     drawing = surfaces.values(replace(chains, wishes=replace(wishes, frame=frame)))
-    keys = [key | {"title": with_file(case.data, str(key["title"]))} | bar for key in drawing.keys]
+    words = [_molecule_named(case.data)]
+    titles = [", ".join(filter(None, [*words, str(key["title"])])) for key in drawing.keys]
+    keys = [key | {"title": title} | bar for key, title in zip(drawing.keys, titles, strict=True)]
     drawing = replace(drawing, words=f"backbone in the colours of {name}", keys=keys)
     drawing = replace(drawing, notes=[*drawing.notes, *_on_ligands(case.data.run(), ligands.run())])
     return with_molecule(case, drawing, ligands, BESIDE_CHAINS) if has_ligands else drawing
