@@ -76,6 +76,19 @@ colormaps.register(speed, force=True)
 #: ones red.
 _VIOLET_TO_YELLOW = ["#5a4fb0", "#3f7fc9", "#35a7b8", "#4fc087", "#a5d24a", "#f2dc3c"]
 _INDIGO_TO_YELLOW = ["#4a45a6", "#7d40a8", "#bb4380", "#e3624d", "#f4993c", "#f9df74"]
+#: Pale over green and yellow to red and violet, as rain on radars is printed, but lighter or darker
+#: from step to step: light rain to hail.
+_RAIN = [
+    "#dfe6ee",
+    "#9fc3de",
+    "#5b9fb5",
+    "#3f9a5f",
+    "#a9c83f",
+    "#f3d23c",
+    "#ef8d2f",
+    "#d4402f",
+    "#8e2a86",
+]
 _ALL_AROUND = ["#3b6fb6", "#2fa5a0", "#6db33f", "#e0b030", "#e0603f", "#a34fa3", "#3b6fb6"]
 _surface = LinearSegmentedColormap.from_list("vizlight.surface", _VIOLET_TO_YELLOW)
 _heat = LinearSegmentedColormap.from_list("vizlight.heat", _INDIGO_TO_YELLOW)
@@ -88,6 +101,7 @@ for _map, _name, _on_paper, _on_dark in (
         colormaps.register(_part, force=True)
 colormaps.register(_surface, force=True)
 colormaps.register(_heat, force=True)
+colormaps.register(LinearSegmentedColormap.from_list("vizlight.rain", _RAIN), force=True)
 colormaps.register(LinearSegmentedColormap.from_list(CYCLIC, _ALL_AROUND), force=True)
 
 

@@ -301,6 +301,10 @@ def test_the_title_of_a_speed_is_what_the_names_of_components_have_in_common():
         said.add_array(letter, {"units": "m/s", "long_name": f"{letter}-momentum component"})
     meaning.attach(grid, said)
     assert drawing.titled_length(grid, "u,v") == "speed of u,v (m/s)"
+    grid["wind"] = np.zeros((4, 3))
+    said.add_array("wind", {"units": "m/s", "long_name": "wind-velocity"})
+    meaning.attach(grid, said)
+    assert drawing.titled_length(grid, "wind") == "wind speed (m/s)"
     grid["w"] = np.zeros((4, 3))
     said.add_array("w", {"units": "cm/s", "long_name": "Velocity"})
     meaning.attach(grid, said)

@@ -51,6 +51,13 @@ def test_a_sweep_is_a_whole_turn_around_its_radar():
     assert series.of(mesh) == [0.0]
 
 
+def test_rain_has_the_colours_of_a_radar():
+    file = volume()
+    for unit, has_rain in (("dBZ", True), ("m", False)):
+        file["dbz"].attrs["units"] = unit
+        assert ("'vizlight.rain'" in vizlight.look(file).script()) == has_rain
+
+
 def test_reflectivity_is_the_first_of_the_variables():
     file = volume()
     names = ("NCP", "differential_reflectivity", "z")

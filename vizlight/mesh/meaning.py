@@ -642,6 +642,18 @@ def is_temperature(mesh: pv.DataSet, name: str) -> bool:
     return _is_called(mesh, name, _TEMPERATURE)
 
 
+def is_reflectivity(mesh: pv.DataSet, name: str) -> bool:
+    """Return whether an array is one of how much rain reflects, by its unit.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    name : str
+        Name of an array.
+    """
+    return of(mesh).arrays.get(name, {}).get("units", "").lower() == "dbz"
+
+
 def is_direction(mesh: pv.DataSet, name: str) -> bool:
     """Return whether an array is one of directions in degrees, or in no unit that is said.
 

@@ -120,14 +120,18 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
         grid.field_data[UNIT] = [unit]
         said.axes = [f"{axis} in {unit} by the reference system" for axis in said.axes]
     # Many files of elevations name no system: then only the numbers tell of degrees.
-    elif seem_degrees(grid, next(iter(arrays))):
-        grid.field_data[UNIT] = [DEGREE]
-        said.notes.append("taken for degrees by their ranges")
-    elif "elevation" in arrays and not on_page and not units.get("elevation"):
-        # Coordinates and heights of one unit, which it mostly is.
-        grid.field_data[UNIT] = ["metre"]
-        said.add_array("elevation", {"units": "m"})
-        said.notes.append("lengths and heights taken for metres")
+    else:
+        in_metres = "elevation" in arrays and not on_page and not units.get("elevation")
+        if in_metres:
+            said.add_array("elevation", {"units": "m"})
+        if seem_degrees(grid, next(iter(arrays))):
+            grid.field_data[UNIT] = [DEGREE]
+            heights = ", heights for metres" * in_metres
+            said.notes.append(f"taken for degrees by their ranges{heights}")
+        elif in_metres:
+            # Coordinates and heights of one unit, which it mostly is.
+            grid.field_data[UNIT] = ["metre"]
+            said.notes.append("lengths and heights taken for metres")
     meaning.attach(grid, said)
     return grid
 

@@ -53,6 +53,8 @@ AROUND_ZERO = {LIGHTNESS: ON_BANDS, ON_SURFACES: "coolwarm"}
 OF_HEAT = {LIGHTNESS: "vizlight.heat", ON_SURFACES: "vizlight.heat"} | {
     f"vizlight.on_{ground}": f"vizlight.heat_on_{ground}" for ground in ("paper", "dark")
 }
+#: Those of rain on a radar in place of maps of a sheet.
+OF_RAIN = dict.fromkeys((LIGHTNESS, ON_SURFACES), "vizlight.rain")
 #: Colour of missing values where 0 is light grey.
 DARK_MISSING = "#7a7a7a"
 #: Light of a room at the place that is as bright as white paper in other light: a surface without
@@ -597,6 +599,9 @@ class Case:
         turn = range_of_turn(values) if meaning.is_direction(self.data.run(), name) else None
         if turn is not None:
             shown, cmap = turn, CYCLIC
+        elif meaning.is_reflectivity(self.data.run(), name):
+            # Decibels below 0 are less rain.
+            cmap = OF_RAIN.get(cmap, cmap)
         elif shown.is_signed and is_plain:
             shown, cmap = shown.around_zero(values), AROUND_ZERO[cmap]
         elif meaning.is_temperature(self.data.run(), name):
@@ -863,7 +868,10 @@ def titled_length(mesh: pv.DataSet, name: str) -> str:
     if DISPLACEMENT.fullmatch(name.lower()):
         return f"displacement{title.removeprefix(name)}" if title.startswith(name) else title
     is_speed = title.lower().endswith("/s)") or VELOCITY.fullmatch(name.lower())
-    # The speed of a velocity is a speed.
+    # The speed of a velocity is a speed, and that of a wind velocity a wind speed.
+    of_what = re.match(r"(?i)(\w+)[ -]velocity\b", title)
+    if is_speed and of_what and "," not in title.partition(" at ")[0]:
+        return f"{of_what[1]} speed{title[of_what.end() :]}"
     words = re.sub(r"(?i)^of (velocity|vectors?)(?= \(|$)", "", f"of {title}").strip()
     return f"speed {words}".strip() if is_speed else f"length of {title}"
 
