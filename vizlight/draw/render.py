@@ -256,9 +256,11 @@ def make_plotter(
                 plotter.background_color = back
                 width, left = 0.1 / BAR_COLUMN, 0.2
             scalar_bar = plotter.add_scalar_bar(  # type: ignore[call-arg]
-                title=f"{bar}\n", mapper=mapper, color=ink, n_labels=3, fmt="%.1f", vertical=True,
+                title=bar, mapper=mapper, color=ink, n_labels=3, fmt="%.1f", vertical=True,
                 height=0.7, width=width, position_x=left, position_y=0.12,
             )  # fmt: skip
+            # A gap between the title and the numbers.
+            scalar_bar.SetTitle(f"{bar}\n")
             if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
                 name_no_data(scalar_bar)
     except BaseException:
