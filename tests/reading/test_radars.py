@@ -55,7 +55,7 @@ def test_rain_has_the_colours_of_a_radar():
     file = volume()
     for unit, has_rain in (("dBZ", True), ("m", False)):
         file["dbz"].attrs["units"] = unit
-        assert ("vizlight.rain" in vizlight.look(file, isolines=False).script()) == has_rain
+        assert ("vizlight.rain" in vizlight.look(file, map_parts=["frame"]).script()) == has_rain
 
 
 def test_reflectivity_is_the_first_of_the_variables():
