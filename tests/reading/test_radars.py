@@ -51,11 +51,18 @@ def test_a_sweep_is_a_whole_turn_around_its_radar():
     assert series.of(mesh) == [0.0]
 
 
-def test_rain_has_the_colours_of_a_radar():
+def test_rain_has_the_colours_of_a_radar_in_steps_from_0_on():
     file = volume()
-    for unit, has_rain in (("dBZ", True), ("m", False)):
-        file["dbz"].attrs["units"] = unit
-        assert ("vizlight.rain" in vizlight.look(file, map_parts=["frame"]).script()) == has_rain
+    file["dbz"].values[:] = np.random.default_rng(0).uniform(-30, 47, file["dbz"].shape)
+    file["dbz"].attrs["units"] = "dBZ"
+    (key,) = vizlight.look(file).drawing.keys
+    assert key["cmap"].arguments[2] == "vizlight.rain"
+    assert key["levels"] == pytest.approx(np.arange(0, 51, 5))
+    # What reflects hardly at all is as pale as dry ground.
+    table = key["cmap"].run()
+    assert np.min(table.map_value(-10)[:3]) > 0.95
+    file["dbz"].attrs["units"] = "m"
+    assert "vizlight.rain" not in vizlight.look(file).script()
 
 
 def test_reflectivity_is_the_first_of_the_variables():

@@ -329,7 +329,8 @@ def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
     -------
     pyvista.PolyData
         Surfaces along the carbon of each amino acid, or the phosphorus of each nucleotide, with the
-        arrays of these atoms, interpolated. They end where the next is farther than in a whole
+        arrays of these atoms, interpolated; helices and strands of which the file tells are kinds
+        of faces. They end where the next is farther than in a whole
         chain.
 
     Raises
@@ -388,6 +389,11 @@ def backbone(atoms: pv.PolyData, /) -> pv.PolyData:
         if name != BACKBONE:
             between = (1 - share) * rows[below] + share * rows[after]
             surface.point_data[name] = between.astype(rows.dtype)
+    if said is not None:
+        # Of faces, so that colours change across a ribbon in a straight line.
+        first = along[surface.regular_faces].min(axis=1)
+        del surface.point_data[STRUCTURE]
+        surface.cell_data[STRUCTURE] = kinds[np.rint(first).astype(np.intp)]
     surface.GetFieldData().ShallowCopy(atoms.GetFieldData())
     return surface
 

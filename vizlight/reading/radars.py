@@ -88,7 +88,7 @@ def grid(
         once = np.ptp(turned[order])
         if (2 * np.pi - once) * (len(order) - 1) < _GAP * once:
             order = np.append(order, 0)
-    said.level = f"{what} {angle:.3g}°"
+    said.level = f"{what} {round(angle, 2):g}°"
     if len(firsts) > 1 and not is_upward:
         listed = ", ".join(f"{each:g}" for each in angles)
         said.notes.append(f"the sweep {angles[sweep]:g} of {listed}; --at sweep= takes another")

@@ -53,8 +53,8 @@ AROUND_ZERO = {LIGHTNESS: ON_BANDS, ON_SURFACES: "coolwarm"}
 OF_HEAT = {LIGHTNESS: "vizlight.heat", ON_SURFACES: "vizlight.heat"} | {
     f"vizlight.on_{ground}": f"vizlight.heat_on_{ground}" for ground in ("paper", "dark")
 }
-#: Those of rain on a radar in place of maps of a sheet.
-OF_RAIN = dict.fromkeys((LIGHTNESS, ON_SURFACES), "vizlight.rain")
+#: That of rain on a radar, its steps in decibels, and the percentage of places within it.
+RAIN, DECIBELS, RAINY = "vizlight.rain", 5.0, 99.9
 #: Colour of missing values where 0 is light grey.
 DARK_MISSING = "#7a7a7a"
 #: Light of a room at the place that is as bright as white paper in other light: a surface without
@@ -599,9 +599,8 @@ class Case:
         turn = range_of_turn(values) if meaning.is_direction(self.data.run(), name) else None
         if turn is not None:
             shown, cmap = turn, CYCLIC
-        elif meaning.is_reflectivity(self.data.run(), name):
-            # Decibels below 0 are less rain.
-            cmap = OF_RAIN.get(cmap, cmap)
+        elif meaning.is_reflectivity(self.data.run(), name) and is_plain:
+            return colors_of_rain(values) | self.wishes.colors, ""
         elif shown.is_signed and is_plain:
             shown, cmap = shown.around_zero(values), AROUND_ZERO[cmap]
         elif meaning.is_temperature(self.data.run(), name):
@@ -703,6 +702,21 @@ def _is_cut_by_box(surface: pv.PolyData, edges: pv.PolyData) -> bool:
     places = np.asarray(edges.points, dtype=np.float64)[..., np.newaxis]
     on = np.abs(places - ends) < ON_BOX * surface.length
     return bool(np.mean(on.any(axis=(1, 2))) > CUT and np.all(on.any(axis=0)))
+
+
+def colors_of_rain(values: Array) -> Keywords:
+    """Return the colours of rain in steps of decibels above 0, below which there is hardly any.
+
+    Parameters
+    ----------
+    values : ndarray
+        Finite values, one at least.
+    """
+    # Single places reflect more than any rain.
+    high = float(DECIBELS * max(np.ceil(np.percentile(values, RAINY) / DECIBELS), 2))
+    inner = np.arange(DECIBELS, high, DECIBELS).tolist()
+    table = Step("", BANDS, inner, [0.0, high], RAIN, below=GROUND)
+    return {"cmap": table, "clim": [0.0, high], "nan_color": MISSING}
 
 
 def colors_in(shown: Range, cmap: Foreign, unit: float = 1.0) -> Keywords:
