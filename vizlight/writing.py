@@ -19,13 +19,8 @@ from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vizlight import _check, _supervise
 from vizlight.mesh import blocks, height_grids
 from vizlight.mesh.blocks import DataSetT
-from vizlight.mesh.derived import (
-    check_dataset,
-    warped,
-)
-from vizlight.reading import (
-    formats,
-)
+from vizlight.mesh.derived import check_dataset, warped
+from vizlight.reading import formats
 from vizlight.reading.paths import checked_path, no_file, wrong
 from vizlight.reading.reader import FINE, shortest
 from vizlight.vtk import messages

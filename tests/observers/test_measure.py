@@ -11,17 +11,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 from shapes import straws
-from sheets import (
-    DIRECTION,
-    FLAT,
-    HOW,
-    SHAPE,
-    SIZE,
-    counts,
-    plotter_of,
-    rings,
-    sheet,
-)
+from sheets import DIRECTION, FLAT, HOW, SHAPE, SIZE, counts, plotter_of, rings, sheet
 
 import vizlight
 from vizlight import presets

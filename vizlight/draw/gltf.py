@@ -16,13 +16,7 @@ from vizlight._types import Array, Given, Indices, Keywords, Raw
 from vizlight._version import __version__
 from vizlight.draw.keywords import LIGHT
 from vizlight.draw.live import lifted
-from vizlight.draw.sources import (
-    LEFT_OUT,
-    fixed_colors,
-    lit_apart,
-    sources_in_scene,
-    tinted,
-)  # fmt: skip
+from vizlight.draw.sources import LEFT_OUT, fixed_colors, lit_apart, sources_in_scene, tinted
 from vizlight.filters.relight import Source
 from vizlight.filters.tint import ColorMap, color_table, map_colors, values_of, values_of_blocks
 from vizlight.mesh import blocks

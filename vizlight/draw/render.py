@@ -19,14 +19,7 @@ from vtkmodules.vtkRenderingCore import vtkProp3D
 from vizlight import _check
 from vizlight._types import Array, ColorLike, Foreign, Keywords
 from vizlight.draw import strokes
-from vizlight.draw.backends import (
-    Backend,
-    BackendError,
-    Probe,
-    choose_backend,
-    probe,
-    window_class,
-)
+from vizlight.draw.backends import Backend, BackendError, Probe, choose_backend, probe, window_class
 from vizlight.draw.box_axes import box_axes, box_edges, captions
 from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.glsl import Stroke

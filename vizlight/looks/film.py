@@ -22,14 +22,7 @@ from vizlight.looks.contents import Contents
 from vizlight.looks.options import READ
 from vizlight.looks.ranges import range_shown
 from vizlight.looks.recipes import fields
-from vizlight.looks.recipes.drawing import (
-    BANDS,
-    GROUND,
-    ON_BANDS,
-    ON_GROUND,
-    Layer,
-    colors_in,
-)
+from vizlight.looks.recipes.drawing import BANDS, GROUND, ON_BANDS, ON_GROUND, Layer, colors_in
 from vizlight.looks.recipes.maps import classes
 from vizlight.looks.steps import Step, in_order
 from vizlight.looks.wishes import Wishes

@@ -20,14 +20,7 @@ from vizlight.mesh.polylines import backdrop
 from vizlight.observers.eye import MM_PER_INCH, NOISE
 from vizlight.observers.figures import Legibility
 from vizlight.observers.measure import measure
-from vizlight.observers.samples import (
-    WHOLE,
-    are_of_cells,
-    camera_of,
-    is_large,
-    is_solid,
-    part_on,
-)
+from vizlight.observers.samples import WHOLE, are_of_cells, camera_of, is_large, is_solid, part_on
 from vizlight.observers.whole import PRINT, read_picture, reading
 from vizlight.scene import Light, Scene, View
 from vizlight.scene.presets import required_scene

@@ -17,10 +17,7 @@ from vizlight import _check
 from vizlight._types import AnyArray, Foreign
 from vizlight.mesh import meaning
 from vizlight.mesh.georeference import UNIT
-from vizlight.reading import (
-    file_parts,
-    series,
-)
+from vizlight.reading import file_parts, series
 
 #: Name of the array of a volume by the end of the name of its file, where that is not NIfTI.
 FORMATS = {".mnc": "MINC", ".mgz": "MGH", ".mgh": "MGH", ".head": "AFNI", ".brik": "AFNI"}

@@ -104,7 +104,8 @@ def _of_mesh(path: Path) -> Mesh | None:
 
 def _of_msh(path: Path) -> Mesh | None:
     """Return a mesh of Abaqus, which may have the suffix of gmsh."""
-    return _of_inp(path) or _by_meshio(path)
+    mesh = _of_inp(path)
+    return _by_meshio(path) if mesh is None else mesh
 
 
 def _of_inp(path: Path) -> Mesh | None:

@@ -15,9 +15,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight._types import Foreign, Keywords, Raw
-from vizlight.reading import (
-    file_parts,
-)
+from vizlight.reading import file_parts
 
 #: Numbers in an element of glTF, and bytes of a number.
 _ELEMENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}

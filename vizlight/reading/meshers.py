@@ -15,10 +15,7 @@ import pyvista as pv
 from vizlight import _check, _supervise
 from vizlight._types import Foreign
 from vizlight.mesh import meaning
-from vizlight.reading import (
-    file_parts,
-    series,
-)
+from vizlight.reading import file_parts, series
 
 #: Words for the arrays of gmsh.
 _GMSH = {"gmsh:physical": "Physical group", "gmsh:geometrical": "Geometrical entity"}

@@ -7,10 +7,7 @@ import errno
 from pathlib import Path
 
 from vizlight import _check
-from vizlight.reading import (
-    cf_grids,
-    series,
-)
+from vizlight.reading import cf_grids, series
 
 
 class FileError(ValueError):

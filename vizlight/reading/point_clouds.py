@@ -16,10 +16,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._types import Array, Foreign, Raw
 from vizlight.mesh import meaning
-from vizlight.reading import (
-    file_parts,
-    molecules,
-)
+from vizlight.reading import file_parts, molecules
 
 #: Fields of places and of normals, and those whose four bytes are a colour.
 _PLACES, _NORMALS = ("x", "y", "z"), ("normal_x", "normal_y", "normal_z")

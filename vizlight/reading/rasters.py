@@ -16,10 +16,7 @@ from vizlight import _check
 from vizlight._types import Array, Foreign, Raw, Slice
 from vizlight.mesh import blocks, fills, meaning
 from vizlight.mesh.georeference import DEGREE, KILOMETRE, METRES, UNIT, range_of, seem_degrees
-from vizlight.reading import (
-    composites,
-    file_parts,
-)
+from vizlight.reading import composites, file_parts
 
 #: File name extensions of the rasters that are read by rasterio.
 SUFFIXES = (

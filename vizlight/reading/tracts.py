@@ -14,10 +14,7 @@ from vizlight import _check, _supervise
 from vizlight._types import Array, Foreign, Indices, Raw
 from vizlight.mesh import meaning, polylines
 from vizlight.mesh.georeference import UNIT
-from vizlight.reading import (
-    brains,
-    file_parts,
-)
+from vizlight.reading import brains, file_parts
 
 
 def read(path: Path) -> pv.PolyData:

@@ -15,13 +15,7 @@ from vizlight.looks import levels
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import ISOMETRIC, Viewpoint, eye_around
 from vizlight.looks.recipes import fields, lines, surfaces
-from vizlight.looks.recipes.drawing import (
-    ON_SURFACES,
-    Doubt,
-    Drawing,
-    Layer,
-    range_of,
-)
+from vizlight.looks.recipes.drawing import ON_SURFACES, Doubt, Drawing, Layer, range_of
 from vizlight.looks.steps import Step
 from vizlight.mesh import meaning, montages
 from vizlight.reading import density_maps, molecules
