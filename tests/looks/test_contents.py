@@ -103,6 +103,16 @@ def test_labels_are_kinds_and_scans_are_values():
     assert roles == {"labels": "kinds", "scan": "values"}
 
 
+def test_whole_numbers_of_cells_that_follow_one_another_are_those_of_parts():
+    mesh = pv.ImageData(dimensions=(41, 41, 1))
+    count = np.arange(1600)
+    mesh.cell_data["solid"] = (count // 64).astype(np.int32)
+    mesh.cell_data["steps"] = (count % 40).astype(np.int32)
+    mesh.cell_data["solid_float"] = count // 64 + 0.0
+    roles = {array.name: array.role for array in Contents(mesh).arrays}
+    assert roles == {"solid": "kinds", "steps": "values", "solid_float": "values"}
+
+
 def test_a_scan_with_even_parts_has_no_labels():
     """Its edges pass through the values between, of which each has a row."""
     x = np.arange(60**3) % 60

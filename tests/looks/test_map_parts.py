@@ -387,3 +387,15 @@ def test_heights_of_stations_are_on_a_map_with_coasts():
     look = vizlight.look(cartography.in_degrees(stations), size=SIZE)
     assert look.array == "elevation"
     assert "coasts" in paths(look)
+
+
+@pytest.mark.parametrize(("name", "is_warm"), [("sst", True), ("sst anomaly", False)])
+def test_bands_of_a_warm_sea_are_unlike_the_grey_of_land(name, is_warm):
+    sea = chart(60, 40, name=name)
+    sea[name] += 285.0
+    sea[name][:60] = np.nan
+    look = vizlight.look(sea, size=SIZE)
+    table = look.drawing.layers[0].keywords["cmap"]
+    assert ("vizlight.heat" in table.arguments) == is_warm
+    # The sea ends halfway between points with and without a value.
+    assert np.isnan(look.drawing.layers[0].mesh.run()[name]).any()

@@ -41,6 +41,15 @@ def test_a_long_tail_of_many_values_is_seen_to_its_end():
     assert not any(shown.clipped)
 
 
+def test_peaks_of_lengths_lie_beyond_the_end():
+    lengths = np.append(RANDOM.uniform(0, 1, 4000), RANDOM.uniform(1.5, 2, 10))
+    shown = range_shown(lengths, lengths=True)
+    assert 1 <= shown.high < 1.5
+    assert shown.clipped == (False, True)
+    # An engineer looks for the peaks of a stress.
+    assert range_shown(lengths).high >= lengths.max()
+
+
 def test_long_tails_on_both_sides_lie_beyond_the_ends():
     """As derivatives have near a sharp edge: Student's distribution of one degree of freedom."""
     values = np.random.default_rng(0).standard_t(1, 4000)

@@ -37,10 +37,21 @@ def test_heights_are_raised_no_more_than_the_light_lies_on_most_of_them(altitude
     factor = taken(look).get("exaggeration", 1.0)
     usual = georeference.exaggeration(mesh, "elevation")
     most = np.tan(np.radians(altitude)) / height_grids.steep(mesh, "elevation", reliefs.LIT)
-    assert 1 <= factor <= usual
+    assert 1 <= factor <= max(usual, reliefs.GENTLE)
     assert factor <= max(most, 1.0)
     assert any("shadow of this light" in note for note in look.notes) == (factor < usual)
     assert any(f"azimuth and altitude 280,{altitude:g}" in note for note in look.notes)
+
+
+@pytest.mark.parametrize("is_gentle", [True, False])
+def test_gentle_slopes_are_raised(is_gentle):
+    mesh = hills(0.8)
+    if is_gentle:
+        mesh["elevation"] = 0.2 * mesh.points[:, 0]
+    assert georeference.exaggeration(mesh, "elevation") == 1
+    look = vizlight.look(mesh, "relief", scene=under(45.0), size=SIZE)
+    assert taken(look).get("exaggeration", 1.0) == (reliefs.GENTLE if is_gentle else 1.0)
+    assert any("slopes are gentle" in note for note in look.notes) == is_gentle
 
 
 def test_a_factor_of_the_user_is_kept_in_a_low_light():

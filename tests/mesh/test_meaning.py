@@ -224,6 +224,7 @@ def test_a_scale_has_the_number_of_a_layer_and_says_whether_it_is_one_of_a_sea(
     ("name", "heat", "decades"),
     [
         ("T", True, False), ("Temp_K", True, False), ("sst", True, False), ("tempo", False, False),
+        ("temp anomaly", False, False), ("temperature change", False, False),
         ("PERMX", False, True), ("log10", False, False), ("permittivity", False, False),
         ("Electrical resistivity", False, True), ("thermal_conductivity", False, True),
     ],

@@ -64,8 +64,28 @@ def test_what_does_not_fit(mesh, name, factor, kind, words):
         smoothed(mesh, name, factor)
 
 
-def test_missing_values_are_refused():
+def test_values_end_halfway_to_missing_ones():
     mesh = grid()
-    mesh["v"][3] = np.nan
+    rough = mesh["v"].copy().reshape(5, 7)
+    rough[2, 3] = rough[0, 0] = np.nan
+    mesh["v"] = rough.ravel()
+    smooth = smoothed(mesh, "v", 4)
+    is_known = np.isfinite(smooth["v"])
+    assert np.nanmin(rough) <= smooth["v"][is_known].min()
+    assert smooth["v"][is_known].max() <= np.nanmax(rough)
+    np.testing.assert_allclose(smooth.bounds, mesh.bounds)
+    # All of it is drawn once: a part with values, and a part without.
+    assert smooth.area == pytest.approx(12 * 12)
+    for column, is_there in ((3, False), (3.25, False), (3.75, True), (4, True)):
+        nearest = smooth.find_closest_point((-1 + 2 * column, 4 + 3 * 2, 2))
+        assert np.isfinite(smooth["v"][nearest]) == is_there
+    known = np.isfinite(mesh["v"])
+    for place, value in zip(mesh.points[known], mesh["v"][known], strict=True):
+        assert smooth["v"][smooth.find_closest_point(place)] == pytest.approx(value)
+
+
+def test_a_map_without_a_value_is_refused():
+    mesh = grid()
+    mesh["v"] = np.full(35, np.nan)
     with pytest.raises(ValueError, match="finite places and values"):
         smoothed(mesh, "v", 2)

@@ -67,6 +67,8 @@ def test_trx_has_the_lines_the_data_and_the_groups(tmp_path):
         )
         made.groups["left"] = np.array([0, 2], np.uint32)
         trx.save(made, str(tmp_path / "a.trx"))
+        made.groups["right"] = np.array([1], np.uint32)
+        trx.save(made, str(tmp_path / "b.trx"))
         made.close()
     mesh = vizlight.read(tmp_path / "a.trx")
     expected = vizlight.read(tract("complex.trk"))
@@ -77,6 +79,10 @@ def test_trx_has_the_lines_the_data_and_the_groups(tmp_path):
         mesh.cell_data["mean_curvature"], expected.cell_data["mean_curvature"], rtol=1e-3
     )
     assert mesh.cell_data["left"].tolist() == [1, 0, 1]
+    # Groups that share no line are kinds.
+    mesh = vizlight.read(tmp_path / "b.trx")
+    assert mesh.cell_data["group"].tolist() == [1, 2, 1]
+    assert meaning.flags(mesh, "group") == {0: "none", 1: "left", 2: "right"}
 
 
 def test_a_tractogram_is_lit_and_kept(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -32,6 +33,8 @@ NEARLY_ALL = 0.97
 #: Least rows of a run of equal labels, in the mean: regions are larger than that, while the edges
 #: of a scan pass through all its values.
 LEAST_RUN = 3.0
+#: Most runs of the numbers of parts, in the number of parts, and least cells of one in the mean.
+MOST_RUNS, LEAST_PART = 1.5, 30
 #: Extent across a flat surface, across a slab that is taken for one, and across a slab that is seen
 #: from above, as a share of the second side.
 FLAT, SLAB, LAYER = 1e-6, 0.01, 0.15
@@ -501,6 +504,7 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
         return Named(name, "kinds", of_cells, 1, low, high) if len(finite) < len(sample) else None
     distinct = len(np.unique(finite))
     whole = high - low < MOST_SPAN and _are_whole(finite)
+    of_kinds |= of_cells and _are_of_parts(values, distinct)
     ground = _HEIGHTS.search(lower) and not _NO_GROUND.search(lower)
     few = distinct <= meaning.MOST_KINDS and not (named and ground)
     if whole and (few or of_kinds or _are_labels(values)):
@@ -611,6 +615,12 @@ def _are_labels(values: Raw) -> bool:
         return False
     jumps = steps[steps > 0]
     return len(jumps) > 0 and float(np.median(jumps)) > 1
+
+
+def _are_of_parts(values: Raw, distinct: int) -> bool:
+    """Return whether whole numbers of cells are those of parts that follow one another."""
+    runs = 1 + int(np.count_nonzero(np.diff(values))) if values.dtype.kind in "iu" else math.inf
+    return runs <= MOST_RUNS * distinct and LEAST_PART * runs <= len(values)
 
 
 def _are_regions(mesh: pv.DataSet, values: Raw) -> bool:

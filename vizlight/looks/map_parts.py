@@ -199,7 +199,11 @@ def smoothed(mesh: Step, array: Named) -> Step | None:
     if len(sizes) != 2 or array.name not in grid.point_data:
         return None
     factor = min(FINE // max(sizes), MOST_FINER)
-    if factor < 2 or not np.isfinite(grid.point_data[array.name]).all():
+    is_known = np.isfinite(grid.point_data[array.name])
+    if not is_known.all() and is_known.any() and max(sizes) <= FINE:
+        # Its edge is that of areas around points.
+        factor = max(factor, 2)
+    if factor < 2 or not is_known.any():
         return None
     return Step("smooth", "vizlight.cartography.smoothed", mesh, array.name, factor)
 

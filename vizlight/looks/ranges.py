@@ -17,6 +17,9 @@ from vizlight.maps import TWO_SIDED
 FENCE, MOST_OUTSIDE, LEAST_FREED, FEW, FREED_BY_MANY = 4.5, 0.1, 0.32, 0.002, (0.75, 0.45)
 #: Percentiles of values between two tails of many values far outside.
 BETWEEN_TAILS = (5, 95)
+#: Percentile of lengths and amounts above which they are peaks, and the share of the bar that these
+#: take at least where it ends below them.
+BELOW_PEAKS, FREED_BY_PEAKS = 99.5, 0.3
 #: Ratio of the 98th percentile to the median from which lengths have a logarithmic bar, and the
 #: ratio of its ends at most.
 SKEWED, DECADES = 10.0, 100.0
@@ -181,6 +184,9 @@ def range_shown(
     outside = np.mean(below | above)
     needed = LEAST_FREED if outside <= FEW else FREED_BY_MANY[all(cut)]
     if not step or outside > MOST_OUTSIDE or (freed < needed and not is_apart):
+        top = float(np.percentile(values, BELOW_PEAKS))
+        if (lengths or amounts) and high - top > FREED_BY_PEAKS * (high - low):
+            return Range(*even_ends(low, top), clipped=(False, True))
         return Range(*even_ends(low, high))
     ends = (
         _rounded(fences[0] if cut[0] else low, step, np.floor),

@@ -15,7 +15,7 @@ from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.depth_map import depth_map
 from vizlight.mesh import blocks, georeference, records, subdivision
 from vizlight.vtk.arrays import GridPoints, points_of
-from vizlight.vtk.cells import has_faces
+from vizlight.vtk.cells import dimensions, has_faces
 
 Grid: TypeAlias = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 #: Largest extent in z of a level grid, as a share of its size: the rounding of float32 directions.
@@ -302,16 +302,31 @@ def steep(mesh: pv.DataSet, heights: str, share: float) -> float:
         Share of a sample of its triangles, from 0 to 1.
     """
     flat = georeference.in_metres(mesh)
-    triangles = subdivision.simplices(flat)
+    triangles = _some_triangles(flat, MOST_STEEP)
     if not len(triangles) or triangles.shape[1] < 3:
         return 0.0
     points: Array = np.array(points_of(flat, None)[:], dtype=np.float64)
     points[:, 2] = flat.point_data[heights]
-    normals = _normals(points, triangles[:: 1 + len(triangles) // MOST_STEEP])
+    normals = _normals(points, triangles)
     with np.errstate(divide="ignore", invalid="ignore"):
         slopes = np.hypot(normals[:, 0], normals[:, 1]) / np.abs(normals[:, 2])
     slopes = slopes[np.isfinite(slopes)]
     return float(np.quantile(slopes, share)) if len(slopes) else 0.0
+
+
+def _some_triangles(mesh: pv.DataSet, most: int) -> Indices:
+    """Return the corners of some triangles of a mesh, without all others where it is a grid."""
+    sizes = [size for size in dimensions(mesh) if size > 1]
+    if len(sizes) != 2:
+        triangles = subdivision.simplices(mesh)
+        return triangles[:: 1 + len(triangles) // most]
+    wide, count = sizes[0], (sizes[0] - 1) * (sizes[1] - 1)
+    rows, columns = np.divmod(np.arange(0, count, 1 + 2 * count // most), wide - 1)
+    first = rows * wide + columns
+    return np.concatenate([
+        np.stack([first, first + 1, first + wide + 1], axis=1),
+        np.stack([first, first + wide + 1, first + wide], axis=1),
+    ])  # fmt: skip
 
 
 def _areas(surface: pv.PolyData, triangles: Indices) -> Array:

@@ -606,6 +606,8 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
 _CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius", "deg c"}
 #: Names of temperatures, in lower case.
 _TEMPERATURE = re.compile(r"t|theta|(.*[^a-z])?temp(erature)?s?([^a-z].*)?|(.*[^a-z])?(sst|tas)")
+#: Words of what is only a difference of temperatures, in lower case.
+_DIFFERENCE = re.compile("anomal|bias|change|departure|differ|trend")
 #: Names of directions, in lower case.
 _DIRECTION = re.compile(r".*(heading|azimuth|direction|orientation|bearing|course).*|aspect")
 #: Names of properties of rock that differ by decades, in lower case.
@@ -639,7 +641,8 @@ def is_temperature(mesh: pv.DataSet, name: str) -> bool:
     name : str
         Name of an array.
     """
-    return _is_called(mesh, name, _TEMPERATURE)
+    is_difference = any(_DIFFERENCE.search(word) for word in _words_of(mesh, name))
+    return not is_difference and _is_called(mesh, name, _TEMPERATURE)
 
 
 def is_reflectivity(mesh: pv.DataSet, name: str) -> bool:
@@ -669,9 +672,14 @@ def is_direction(mesh: pv.DataSet, name: str) -> bool:
 
 def _is_called(mesh: pv.DataSet, name: str, pattern: re.Pattern[str]) -> bool:
     """Return whether a pattern is that of the name of an array, or of words of its file for it."""
+    return any(pattern.fullmatch(word) for word in _words_of(mesh, name))
+
+
+def _words_of(mesh: pv.DataSet, name: str) -> list[str]:
+    """Return the name of an array and the words of its file for it, in lower case."""
     attributes = of(mesh).arrays.get(name, {})
     words = (name, attributes.get("standard_name", ""), attributes.get("long_name", ""))
-    return any(pattern.fullmatch(word.lower()) for word in words)
+    return [word.lower() for word in words]
 
 
 def _symbol(name: str) -> str:

@@ -12,20 +12,25 @@ from vizlight.mesh import blocks
 #: Types of grids that may have one layer.
 Grid = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 
+#: Name of the share of values that are there, which the result does not keep.
+SHARE = "share"
+
 
 def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     """Return a grid of one layer with more points, between which values run smoothly.
 
     Places and values are interpolated along the rows, then along the columns, by cubic polynomials
     that keep the order of neighbours (Fritsch and Butland 1984), so that no new high or low
-    appears. The points of the grid keep their values.
+    appears. The points of the grid keep their values. Where values are missing, they are so up to
+    halfway to the points with one, as each value stands for the area around its point; from there
+    they run from the mean of those next to the missing one.
 
     Parameters
     ----------
     mesh : pyvista.ImageData, pyvista.RectilinearGrid or pyvista.StructuredGrid
         Grid of one layer.
     name : str
-        Name of an array of one component at its points, all finite.
+        Name of an array of one component at its points; values that are not finite are missing.
     factor : int
         Steps from each point to the next, from 1 to 64.
 
@@ -37,7 +42,7 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     Raises
     ------
     TypeError, ValueError
-        If it is no such grid, or a value is missing.
+        If it is no such grid, a place is not finite, or all values are missing.
 
     Examples
     --------
@@ -62,11 +67,20 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     if name not in mesh.point_data or np.ndim(mesh.point_data[name]) != 1:
         expected = "the name of an array of one component at points"
         raise _check.value_error("name", expected, repr(name))
-    rows = np.column_stack([mesh.points, mesh.point_data[name]]).astype(np.float64)
-    if not np.isfinite(rows).all():
+    values = np.asarray(mesh.point_data[name], dtype=np.float64)
+    is_known = np.isfinite(values)
+    places = np.asarray(mesh.points, dtype=np.float64)
+    if not np.isfinite(places).all() or not is_known.any():
         raise _check.value_error("mesh", "finite places and values", "others")
     # VTK counts columns first.
-    table: Array = rows.reshape(sizes[1], sizes[0], 4)
+    shape = sizes[::-1]
+    weights = is_known.reshape(shape).astype(np.float64)
+    known = np.where(is_known, values, 0.0).reshape(shape)
+    around = _around(known) / np.maximum(_around(weights), 1.0)
+    known = np.where(weights > 0, known, around)
+    table: Array = np.concatenate(
+        [places.reshape(*shape, 3), known[..., np.newaxis], weights[..., np.newaxis]], axis=-1
+    )
     for _ in range(2):
         table = _finer(table, factor).swapaxes(0, 1)
     high, wide = table.shape[:2]
@@ -76,9 +90,22 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     points = table[..., :3].reshape(-1, 3)
     smooth = blocks.polydata(points, faces)
     smooth.point_data[name] = table[..., 3].ravel()
+    if not is_known.all():
+        smooth.point_data[SHARE] = table[..., 4].ravel()
+        missing, smooth = smooth.clip_scalar(scalars=SHARE, value=0.5, both=True)
+        missing.point_data[name] = np.full(missing.n_points, np.nan)
+        smooth = smooth.append_polydata(missing)
+        del smooth.point_data[SHARE]
     for key in mesh.field_data:
         smooth.field_data[key] = mesh.field_data[key]
     return smooth
+
+
+def _around(table: Array) -> Array:
+    """Return the sums of each entry of a table and its eight neighbours."""
+    wide = np.pad(table, 1)
+    wide = wide[:-2] + wide[1:-1] + wide[2:]
+    return np.asarray(wide[:, :-2] + wide[:, 1:-1] + wide[:, 2:])
 
 
 def _finer(rows: Array, factor: int) -> Array:

@@ -79,6 +79,8 @@ def read_trx(path: Path) -> pv.PolyData:
         return lines
 
 
+#: Array of the group of each line, and the name of that of lines in none.
+GROUP, NO_GROUP = "group", "none"
 #: Folders of a .trx file with data beside its lines.
 _SIDE = ("dps", "dpv", "dpg", "groups")
 
@@ -88,16 +90,28 @@ def _of_trx(tracts: Foreign) -> pv.PolyData:
     try:
         lines = tracts.streamlines
         of_lines = dict(tracts.data_per_streamline)
-        for name, members in tracts.groups.items():
-            # A line may be in several groups, so each group is a mask of its own.
-            of_lines[name] = np.isin(np.arange(len(lines)), members).astype(np.uint8)
-        return _polylines(
+        masks = {
+            str(name): np.isin(np.arange(len(lines)), members).astype(np.uint8)
+            for name, members in sorted(tracts.groups.items())
+        }
+        names: list[str] = []
+        # Each group is a mask of its own where a line is in several.
+        if len(masks) > 1 and np.sum([*masks.values()], axis=0).max() <= 1:
+            names = [NO_GROUP, *masks]
+            masks = {GROUP: np.sum([k * mask for k, mask in enumerate(masks.values(), 1)], axis=0)}
+        of_lines |= masks
+        mesh = _polylines(
             lines._data,
             lines._offsets,
             lines._lengths,
             {name: rows._data for name, rows in tracts.data_per_vertex.items()},
             of_lines,
         )
+        if names and GROUP in mesh.cell_data:
+            said = meaning.of(mesh)
+            said.add_kinds(GROUP, [(number, name, ()) for number, name in enumerate(names)])
+            meaning.attach(mesh, said)
+        return mesh
     finally:
         # Packed files lie in a temporary folder until then; the mesh has copies.
         tracts.close()

@@ -6,12 +6,21 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pyvista as pv
 
 from vizlight.draw.margins import ink_on
 from vizlight.draw.ticks import even_levels
 from vizlight.looks import map_parts
-from vizlight.looks.recipes.drawing import BANDS, Drawing, Layer, lines_every, range_of
+from vizlight.looks.recipes.drawing import (
+    BANDS,
+    LIGHTNESS,
+    OF_HEAT,
+    Drawing,
+    Layer,
+    lines_every,
+    range_of,
+)
 from vizlight.looks.steps import Step
 from vizlight.looks.wishes import even_light
 from vizlight.mesh import charts, georeference, meaning
@@ -33,6 +42,8 @@ TOO_COARSE = (
 BALL = "whitesmoke"
 #: Colour of coasts below black strokes: a brown, unlike the blues and greens of the ground.
 UNDER_STROKES = "#9a4f1f"
+#: Colour map of bands of temperatures beside land without any.
+ON_WARM_SEA = OF_HEAT[LIGHTNESS]
 #: Colour of meridians and parallels.
 GRATICULE = "#555555"
 #: Colour of isolines and their numbers, which is seen on all colours of bands, and on those of the
@@ -146,11 +157,18 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
         shown = ends[0] / factor, ends[1] / factor
         edges = edges or classes(levels, shown)
         first_end, *inner, last_end = (float(f"{factor * edge:.12g}") for edge in edges)
+        if meaning.is_temperature(flat.run(), array.name) and _lacks_values(flat, array.name):
+            # The pale middle of other bands is like the grey of land.
+            cmap = cmap or ON_WARM_SEA
         table = Step("", BANDS, inner, (first_end, last_end), *filter(None, [cmap]))
         first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
         of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
         keys = [key | of_bar for key in keys]
     return replace(drawing, layers=[first, *layers, *others], keys=keys)
+
+
+def _lacks_values(mesh: Step, name: str) -> bool:
+    return not np.isfinite(mesh.run().point_data[name]).all()
 
 
 def _with_classes(case: Case, drawing: Drawing) -> Drawing:

@@ -30,6 +30,8 @@ ABOVE = Viewpoint((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), True, "from above, north up"
 #: Points above which a relief has no sky, which would take longer than all the rest, and those of a
 #: map so wide that each row has metres of its own, which take eight times as long.
 MOST_SKY, MOST_WIDE = 250_000, 4_000
+#: Factor of the heights of a map with gentle slopes.
+GENTLE = 2.0
 #: Share of a map that is no steeper than the light, so that half of the rest has its back to it.
 LIT = 0.8
 
@@ -164,15 +166,18 @@ def _raised(case: Case, array: Named, lights: Sequence[Light]) -> tuple[Keywords
     keywords: Keywords = {"elevation": array.name} | dict(case.wishes.light)
     mesh = case.data.run()
     factor, note = case.wishes.heightened(mesh, array.name)
-    if factor > 1 and note:
+    wanted = factor
+    if factor >= 1 and case.wishes.part.get("exaggeration") is None:
         sine = _level_light(lights)
         steep = height_grids.steep(mesh, array.name, LIT) * np.sqrt(1 - sine**2)
         most = max(1.0, round_length(sine / steep)) if steep > 0 else factor
-        if most < factor:
-            times = "as they are" if most == 1 else f"{most:g} times"
-            note = (
-                f"heights are taken {times}, since much of the map would lie in the shadow of this "
-                f"light at {factor:g} times; exaggeration= sets it"
-            )
-            factor = most
+        factor = min(most, max(factor, GENTLE))
+    times = "as they are" if factor == 1 else f"{factor:g} times"
+    if factor < wanted:
+        note = (
+            f"heights are taken {times}, since much of the map would lie in the shadow of this "
+            f"light at {wanted:g} times; exaggeration= sets it"
+        )
+    elif factor > wanted:
+        note = f"heights are taken {times}, since slopes are gentle; exaggeration= sets it"
     return (keywords | {"exaggeration": factor} if factor != 1 else keywords), note
