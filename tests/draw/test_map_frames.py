@@ -320,3 +320,21 @@ def test_discs_of_points_are_within_the_frame(projected):
     wide = 0.015 * 2 * max(half, high)
     assert not np.any((np.abs(x) < half + wide) & (np.abs(y) < high + wide))
     np.testing.assert_allclose(charts.box_of(pv.Plane()), pv.Plane().bounds[:4])
+
+
+@pytest.mark.parametrize(
+    ("places", "has_arrow"), [((-2, 2, 50, 52), True), ((20, 50, 68, 80), False)]
+)
+def test_an_arrow_is_drawn_where_all_meridians_run_along_it(places, has_arrow):
+    west, east, south, north = places
+    grid = pv.ImageData(
+        dimensions=(31, 21, 1), spacing=((east - west) / 30, (north - south) / 20, 1),
+        origin=(west, south, 0),
+    )  # fmt: skip
+    mesh = chart(in_degrees(grid), "+proj=stere +lat_0=90 +lon_0=0 +R=6371000")
+    size = 0.02 * max(mesh.bounds_size)
+    corners = np.asarray(frame(mesh, size).points, dtype=float)
+    # Those of the arrow come before those of its word.
+    head = corners[-count("N") - 4 : -count("N")]
+    is_arrow = np.ptp(head[:, 1]) == pytest.approx(1.1 * size, rel=0.01)
+    assert is_arrow == has_arrow

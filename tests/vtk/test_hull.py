@@ -383,3 +383,27 @@ def test_strips_beside_solid_cells_stay_on_their_surface(monkeypatch):
     surface = pv.wrap(hull.outer_faces(grid.merge(strip))[0])
     assert surface.n_strips == 1
     assert surface.GetNumberOfPolys() == 2 * (4 * 5 + 5 * 4 + 4 * 4)
+
+
+@pytest.mark.parametrize("axes", [(0, 1, 2), (1, 2, 0), (2, 0, 1)])
+def test_curved_faces_are_cut_along_their_curve(axes):
+    """No edge of a bent brick spans more of its angle than two neighbouring nodes do."""
+    cell = pv.UnstructuredGrid(
+        np.append(20, np.arange(20)), [pv.CellType.QUADRATIC_HEXAHEDRON], np.zeros((20, 3))
+    ).GetCell(0)
+    radius, turn, height = np.reshape(cell.GetParametricCoords(), (20, 3))[:, axes].T
+    radius, turn = 1 + radius, np.radians(60) * turn
+    points = np.column_stack([radius * np.cos(turn), radius * np.sin(turn), height])
+    mesh = pv.UnstructuredGrid(
+        np.append(20, np.arange(20)), [pv.CellType.QUADRATIC_HEXAHEDRON], points
+    )
+    surface, origin = hull.outer_surface(mesh)
+    faces = origin[pv.wrap(surface).regular_faces]
+    assert len(faces) == 36
+    outer = faces[np.all(radius[faces] == 2, axis=1)]
+    assert len(outer) == 6
+    for start, end in ((0, 1), (1, 2), (2, 0)):
+        middles = points[outer[:, start]] / 2 + points[outer[:, end]] / 2
+        assert np.hypot(*middles[:, :2].T).min() > 2 * np.cos(np.radians(15)) - 1e-9
+    # The area of each side is that of its flat triangles, seen from outside.
+    assert pv.wrap(surface).volume == pytest.approx(1.5 * 2 * np.sin(np.radians(30)))

@@ -20,6 +20,8 @@ from vizlight.mesh import blocks, charts, dates, georeference, meaning, polyline
 from vizlight.vtk import letters
 from vizlight.vtk.letters import DIGIT, union
 
+#: Most degrees by which a meridian leans on a map with an arrow toward the north.
+MOST_LEANING = 5.0
 #: Width of lines, length of ticks, and distance of words from them, in heights of letters.
 LINE, TICK, GAP = 0.06, 0.35, 0.3
 #: Distance between words of the bottom, in widths of the widest, and of the left, in digits.
@@ -58,8 +60,8 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
     A map in degrees, and one in lengths with a known projection, has a thin frame with round
     degrees along its left and its lower side. One in lengths has a bar of a round length below it,
     as has one in degrees, if it is less than 2000 km wide or of no known projection. An arrow
-    toward the north is beside the bar, and below a map without one whose north is not straight up
-    and has no degrees. Nothing is on the data but the words of parallels around a pole.
+    toward the north is beside the bar, unless meridians lean by more than 5 degrees somewhere, and
+    below a map without one whose north is not straight up and has no degrees. Nothing is on the data but the words of parallels around a pole.
 
     A vertical section of a file has round numbers along its left and its lower side instead, and
     words for them.
@@ -112,7 +114,8 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
             # Below the words of degrees.
             box[2] = min(points[:, 1].min() for points, _ in parts) - GAP * letters
         # An image of no place on the earth has no north.
-        arrow = [] if meaning.is_photograph(mesh) else _arrow(box, letters, turn)
+        has_north = not meaning.is_photograph(mesh) and (sheet is None or _is_along_y(sheet))
+        arrow = _arrow(box, letters, turn) if has_north else []
         parts += [*_bar(box, letters, metres), *arrow]
     elif turn[1, 1] <= 1 - ALMOST and not (is_degrees and straight):
         parts += _arrow(box, letters, turn)
@@ -533,6 +536,15 @@ def _bar(box: Array, size: float, metres: float) -> list[Part]:
         rectangle(left, end, high - THICK * size, high),
         _word(word, end + 2 * GAP * size, bottom - (GAP + DIGIT) * size, size, align=0.0),
     ]
+
+
+def _is_along_y(sheet: charts.MapSheet) -> bool:
+    """Return whether meridians run along y everywhere on the outline of a map, or nearly so."""
+    places = sheet.outline * sheet.metres
+    earth = sheet.plane.inverse(places)
+    ahead = sheet.plane.forward(earth + (0.0, charts.STEP)) - places
+    lean = np.degrees(np.arctan2(np.abs(ahead[:, 0]), ahead[:, 1]))
+    return bool(np.all(lean[np.isfinite(lean)] <= MOST_LEANING))
 
 
 def _arrow(box: Array, size: float, turn: Array) -> list[Part]:

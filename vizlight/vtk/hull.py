@@ -140,6 +140,11 @@ _LAST_LINEAR, _OTHER_LINEAR = 20, {41, 42}
 SOLID = 3
 #: Type of polyhedra, whose faces are stored apart from their points.
 _POLYHEDRON = 42
+#: Places of the four nodes in the middle of sides, and of those at corners, among those of the six
+#: triangles of a face, and the last two of these triangles where they are cut the other way.
+_OF_MIDDLES = ([1, 3, 12, 15], [5, 6, 16], [8, 9, 13, 17], [2, 11, 14])
+_OF_CORNERS = [0, 4, 7, 10]
+_OTHER_CUT = [1, 5, 2, 5, 8, 2]
 #: Types that stand for vertices, lines, polygons and strips.
 _KINDS = (2, 4, 7, 6)
 
@@ -227,6 +232,7 @@ def _with_walls(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
     ids = np.rint(as_numpy(surface.GetPointData().GetArray(NUMBERS))).astype(np.intp)
     surface.GetPointData().RemoveArray(NUMBERS)
     if curved:
+        surface.SetPolys(_cut_as_curved(surface))
         if isinstance(mesh, vtkUnstructuredGrid):
             # Cells are numbered by VTK's kinds: vertices and lines first.
             before = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
@@ -265,6 +271,36 @@ def _join_walls(surface: vtkPolyData, grid: Dataset) -> None:
     for polygon in doubled:
         surface.DeleteCell(before + polygon)
     surface.RemoveDeletedCells()
+
+
+def _cut_as_curved(surface: vtkPolyData) -> vtkCellArray:
+    """Return the polygons of a surface, with faces of eight nodes cut as they are curved.
+
+    VTK cuts such a face, of nodes at its corners and in the middle of its sides, into six triangles.
+    Of the two ways to cut the four inner ones, that counts which passes nearer to the middle of the
+    curved face: the other one notches a cylinder at each face.
+    """
+    ids, offsets = connectivity(surface.GetPolys())
+    start = offsets[:-1][np.diff(offsets) == 3]
+    first = start[: max(len(start) - 5, 0)]
+    first = first[start[5:] - first == 15]
+    nodes = ids[first[:, np.newaxis] + np.arange(18)]
+    is_face = np.ones(len(first), np.bool_)
+    for slots in _OF_MIDDLES:
+        is_face &= np.all(nodes[:, slots] == nodes[:, slots[:1]], axis=1)
+    first, nodes = first[is_face], nodes[is_face]
+    points = places(surface).astype(np.float64)
+    middles = points[nodes[:, [slots[0] for slots in _OF_MIDDLES]]]
+    centre = middles.sum(axis=1) / 2 - points[nodes[:, _OF_CORNERS]].sum(axis=1) / 4
+    along, across = (
+        np.linalg.norm(middles[:, i] / 2 + middles[:, i + 2] / 2 - centre, axis=1) for i in (0, 1)
+    )
+    # Both cut a flat face alike, but for rounding.
+    size = np.linalg.norm(middles[:, 0] - middles[:, 2], axis=1)
+    is_other = across < along - 1e-6 * size
+    ids = ids.copy()
+    ids[first[is_other, np.newaxis] + np.arange(12, 18)] = nodes[is_other][:, _OTHER_CUT]
+    return new_cells(ids, offsets)
 
 
 def _outward(surface: vtkPolyData, grid: vtkUnstructuredGrid, cells: Indices) -> vtkCellArray:

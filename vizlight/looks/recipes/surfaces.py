@@ -34,6 +34,7 @@ from vizlight.looks.steps import DISPLACED, Step
 from vizlight.mesh import blocks, georeference, meaning
 from vizlight.mesh.nspace import POSITION
 from vizlight.reading import brains
+from vizlight.vtk import hull
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
@@ -172,7 +173,9 @@ def _undisplaced(case: Case) -> Step | None:
 def _elements(case: Case, mesh: Step) -> Keywords:
     """Return the drawing of edges of the cells that stresses, or values of a solid, belong to."""
     of_cells = case.needed_array.of_cells and case.contents.dimension == 3
-    return _edges_of_cells(mesh) if of_cells or case.contents.is_strained else {}
+    # The surface of curved cells is in triangles, which are none of the elements.
+    is_wanted = (of_cells or case.contents.is_strained) and not hull.is_curved(case.data.run())
+    return _edges_of_cells(mesh) if is_wanted else {}
 
 
 def _edges_of_cells(mesh: Step) -> Keywords:
