@@ -110,3 +110,12 @@ def test_directions_have_colours_that_go_around():
     assert key["clim"] == (0, 360)
     first, last = colormaps[key["cmap"]]([0.0, 1.0])
     np.testing.assert_allclose(first, last)
+
+
+@pytest.mark.parametrize(("others", "shown"), [(4, "lines by their direction"), (40, "colours of")])
+def test_lines_nearly_all_of_one_bundle_are_shown_by_their_direction(others, shown):
+    mesh = tangle(100)
+    mesh.cell_data["group"] = np.where(np.arange(100) < others, 2, 1)
+    look = vizlight.look(mesh)
+    assert shown in look.drawing.words
+    assert "colours of group" in vizlight.look(mesh, array="group").drawing.words

@@ -29,7 +29,7 @@ GHOSTS = "vtkGhostType"
 #: Most rows of an array, and most cells, that are looked at.
 SAMPLE = 20_000
 #: Share of the rows of an array of kinds that is nearly all of them.
-NEARLY_ALL = 0.97
+NEARLY_ALL = 0.95
 #: Least rows of a run of equal labels, in the mean: regions are larger than that, while the edges
 #: of a scan pass through all its values.
 LEAST_RUN = 3.0

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from vizlight.looks.contents import TRACED, Contents, Named, Role
+from vizlight.looks.contents import TRACED, Contents, Named, Role, kinds_of
 from vizlight.looks.recipes import fields, lines, reliefs, surfaces, volumes
 from vizlight.looks.recipes.drawing import Recipe
 from vizlight.mesh import globes
@@ -59,6 +59,13 @@ def _is_lines(contents: Contents) -> bool:
 
 def _is_traced(contents: Contents) -> bool:
     return _is_lines(contents) and TRACED in contents.mesh.array_names
+
+
+def _is_one_bundle(contents: Contents) -> bool:
+    array = contents.first("values", "heights", "kinds") if _is_lines(contents) else None
+    if array is None or array.role != "kinds":
+        return False
+    return array.distinct > 1 and len(kinds_of(contents.mesh, array.name, 1)) == 1
 
 
 def _is_molecule(contents: Contents) -> bool:
@@ -125,6 +132,7 @@ RULES = (
     Rule("molecule", _is_molecule, "value", ("kinds", "values"), lines.molecule, "a molecule"),
     Rule("lines", _is_traced, "value", ("values", "heights", "kinds", "vectors"), lines.lines,
          "streamlines"),
+    Rule("lines", _is_one_bundle, "heading", (), lines.lines, "lines nearly all of one kind"),
     Rule("lines", _is_lines, "value", ("values", "heights", "kinds"), lines.lines,
          "lines with values"),
     Rule("lines", _is_lines, "heading", (), lines.lines, "lines"),
