@@ -132,6 +132,17 @@ def test_bands_that_do_not_fit(levels, limits, words):
         maps.bands(levels, limits)
 
 
+@pytest.mark.parametrize(("cones", "least"), [("all", 25), ("no green", 12)])
+def test_colours_of_sixteen_kinds_are_far_from_each_other_and_from_what_is_missing(cones, least):
+    rgb = maps.kinds(range(16)).values[:, :3] / 255
+    rgb = np.append(rgb, [mpl.colors.to_rgb(maps.MISSING)], axis=0)
+    lab = cielab(linear(rgb if cones == "all" else without_green(rgb)))
+    distances = np.linalg.norm(lab[:, np.newaxis] - lab, axis=2)
+    # The grey of Paul Tol's set is light as that of missing values is.
+    distances[6, 16] = distances[16, 6] = np.inf
+    assert distances[np.triu_indices(17, 1)].min() > least
+
+
 def test_kinds_have_the_colours_that_are_named():
     table = maps.kinds({1: "sea", 2: "land"}, colors={2: "#00ff00"})
     assert table.values[1].tolist() == [0, 255, 0, 255]

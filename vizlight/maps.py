@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 
 __all__ = ["bands", "directions", "even", "heights", "kinds", "speed"]
 
-#: Colours of kinds that a reader tells apart, also without green cones: Paul Tol's bright and muted
-#: sets, one after the other.
+#: Colours of kinds that a reader tells apart, also without green cones: Paul Tol's bright set, then
+#: others, each as far as can be from those before it, from the grey of missing values and paper.
 _KINDS = (
-    "#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#bbbbbb", "#332288",
-    "#88ccee", "#44aa99", "#117733", "#999933", "#ddcc77", "#cc6677", "#882255", "#aa4499",
+    "#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#bbbbbb", "#333388",
+    "#335533", "#aa99ff", "#aa6600", "#ffbb88", "#aaddaa", "#772200", "#553355", "#996666",
 )  # fmt: skip
 #: Name of the map of directions, whose ends are alike.
 CYCLIC = "vizlight.cyclic"

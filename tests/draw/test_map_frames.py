@@ -338,3 +338,18 @@ def test_an_arrow_is_drawn_where_all_meridians_run_along_it(places, has_arrow):
     head = corners[-count("N") - 4 : -count("N")]
     is_arrow = np.ptp(head[:, 1]) == pytest.approx(1.1 * size, rel=0.01)
     assert is_arrow == has_arrow
+
+
+def test_lines_that_meet_no_side_of_their_own_have_words_at_another(monkeypatch):
+    """On a grid turned by some 45 degrees parallels end below, where meridians do."""
+    written = []
+    word = map_frames._word
+    monkeypatch.setattr(map_frames, "_word", lambda text, *rest, **of: (
+        written.append(text), word(text, *rest, **of)
+    )[1])  # fmt: skip
+    plane = "+proj=stere +lat_0=90 +lon_0=0 +R=6371000"
+    grid = pv.ImageData(dimensions=(41, 6, 1), spacing=(5e4, 5e4, 1), origin=(1e6, -2.0e6, 0))
+    grid.field_data["unit"], grid.field_data["projection"] = ["metre"], [plane]
+    frame(grid, 4e4)
+    assert sum(text.endswith("°N") for text in written) > 1
+    assert any(text.endswith("°E") for text in written)

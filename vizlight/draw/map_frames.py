@@ -61,7 +61,8 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
     degrees along its left and its lower side. One in lengths has a bar of a round length below it,
     as has one in degrees, if it is less than 2000 km wide or of no known projection. An arrow
     toward the north is beside the bar, unless meridians lean by more than 5 degrees somewhere, and
-    below a map without one whose north is not straight up and has no degrees. Nothing is on the data but the words of parallels around a pole.
+    below a map without one whose north is not straight up and has no degrees. Nothing is on the
+    data but the words of parallels around a pole.
 
     A vertical section of a file has round numbers along its left and its lower side instead, and
     words for them.
@@ -375,12 +376,17 @@ def _around(sheet: charts.MapSheet, size: float, turn: Array) -> list[Part]:
             if np.allclose(flat[0], flat[-1], rtol=0, atol=near):
                 parts.append(_inside(flat, word, SMALL * size))
             continue
-        toward = below if is_meridian else beside
-        ends = [(*_away(end, outline, 2 * near, toward), end) for end in (flat[0], flat[-1])]
-        if not is_around:
-            # One word for each line, at the end that is farthest to its side.
+        sides = (below, beside) if is_meridian else (beside, below)
+        for toward in sides[:1] if is_around else sides:
+            ends = [(*_away(end, outline, 2 * near, toward), end) for end in (flat[0], flat[-1])]
+            if is_around:
+                break
+            # One word for each line, at the end that is farthest to its side, or at another side
+            # where it has none there.
             ends = sorted(ends, key=lambda crossing: -float(crossing[2] @ toward))
             ends = [crossing for crossing in ends if crossing[0] >= ASIDE][:1]
+            if ends:
+                break
         for score, way, end in ends:
             if score < -1:
                 continue
@@ -542,7 +548,7 @@ def _is_along_y(sheet: charts.MapSheet) -> bool:
     """Return whether meridians run along y everywhere on the outline of a map, or nearly so."""
     places = sheet.outline * sheet.metres
     earth = sheet.plane.inverse(places)
-    ahead = sheet.plane.forward(earth + (0.0, charts.STEP)) - places
+    ahead = sheet.plane.forward(earth + np.array([0.0, charts.STEP])) - places
     lean = np.degrees(np.arctan2(np.abs(ahead[:, 0]), ahead[:, 1]))
     return bool(np.all(lean[np.isfinite(lean)] <= MOST_LEANING))
 

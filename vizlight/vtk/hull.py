@@ -276,8 +276,8 @@ def _join_walls(surface: vtkPolyData, grid: Dataset) -> None:
 def _cut_as_curved(surface: vtkPolyData) -> vtkCellArray:
     """Return the polygons of a surface, with faces of eight nodes cut as they are curved.
 
-    VTK cuts such a face, of nodes at its corners and in the middle of its sides, into six triangles.
-    Of the two ways to cut the four inner ones, that counts which passes nearer to the middle of the
+    VTK cuts such a face, of nodes at corners and in the middle of sides, into six triangles. Of the
+    two ways to cut the four inner nodes, that counts which passes nearer to the middle of the
     curved face: the other one notches a cylinder at each face.
     """
     ids, offsets = connectivity(surface.GetPolys())

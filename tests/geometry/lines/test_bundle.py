@@ -126,15 +126,15 @@ STATED = {
     "isotropic": ("isotropic", (0.3, -0.4, 0.866), False, 0.01),
     "across parallel lines": ("aligned", (0.3, -0.4, 0.866), False, 0.01),
     "layered": ("layered", (0.3, -0.4, 0.866), False, 0.01),
-    "2 degrees from parallel lines": ("parallel", near_the_axis(2), False, 0.01),
-    "5 degrees from parallel lines": ("parallel", near_the_axis(5), False, 0.01),
-    "10 degrees from parallel lines": ("parallel", near_the_axis(10), False, 0.01),
-    "along nearly parallel lines": ("aligned", near_the_axis(0), False, 0.01),
+    "2 degrees from parallel lines": ("parallel", near_the_axis(2), False, 0.015),
+    "5 degrees from parallel lines": ("parallel", near_the_axis(5), False, 0.015),
+    "10 degrees from parallel lines": ("parallel", near_the_axis(10), False, 0.015),
+    "along nearly parallel lines": ("aligned", near_the_axis(0), False, 0.015),
     "a lamp among isotropic lines": ("isotropic", (0.1, 0.05, -0.08), True, 0.01),
     "a lamp in a layer": ("layered", (0.1, 0.05, 0.125), True, 0.01),
     "a lamp close outside": ("isotropic", (0, 0, 1.1), True, 0.01),
     "a lamp outside, oblique to the axes": ("isotropic", (0.7, -0.45, 0.7), True, 0.01),
-    "a lamp at the end of parallel lines": ("parallel", (1.25, 0, 0), True, 0.01),
+    "a lamp at the end of parallel lines": ("parallel", (1.25, 0, 0), True, 0.02),
 }
 
 
@@ -152,7 +152,7 @@ def test_the_mean_share_of_each_case_is_as_right_as_stated(name, seed, claim):
     assert 0.1 < np.mean(found, axis=0)[0] < 0.97
     claim(abs(error.mean()), most + 2 * error.std() / np.sqrt(len(error)))
     assert error.std() / np.sqrt(len(error)) < 0.012
-    claim(np.abs(error).max(), 0.06, "single")
+    claim(np.abs(error).max(), 0.07, "single")
     assert f"{most:g}" in vizlight.Bundle.__doc__.partition("Notes")[2]
 
 
