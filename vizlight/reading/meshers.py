@@ -167,17 +167,6 @@ def missing_of_tecplot(file: BinaryIO) -> str:
 _IJK = (b"I", b"J", b"K")
 
 
-def missing_of_mdpa(file: BinaryIO) -> str:
-    """Compare the ends of blocks with their begins; meshio goes on past the end of the file."""
-    blocks, wrong = list[bytes](), "its blocks do not end as they begin"
-    for word, name in re.findall(rb"(?m)^[ \t]*(Begin|End)[ \t]+(\w+)", file.read()):
-        if word == b"Begin":
-            blocks.append(name)
-        elif not blocks or blocks.pop() != name:
-            return wrong
-    return wrong if blocks else ""
-
-
 def missing_of_avs(file: BinaryIO) -> str:
     """Count the lines of points and cells of AVS, whose header states both."""
     data = file.read()
