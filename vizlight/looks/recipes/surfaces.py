@@ -101,8 +101,13 @@ def values(case: Case) -> Drawing:
         keywords = case.colors_of_heights
     elif not bent:
         # Nothing is lit: the map may run in lightness, which shows more than hues alone.
-        whole = mesh.run()[array.name].dtype.kind in "iu"
-        is_gray = case.is_of_body or (whole and meaning.is_photograph(mesh.run()))
+        rows = np.asarray(mesh.run()[array.name])
+        # Missing values make numbers in floating point of those of a camera.
+        whole = np.array_equal(rows, np.round(rows), equal_nan=True)
+        # Of bytes on a map those up to 100 may be shares.
+        is_tone = case.contents.raster and array.low >= 0 and 100 < array.high <= 255
+        is_picture = whole and (is_tone or meaning.is_photograph(mesh.run()))
+        is_gray = case.is_of_body or is_picture
         cmap = "gray" if is_gray else LIGHTNESS
         keywords, note = case.ranged_of(mesh, array, cmap, amounts=case.is_of_earth)
     if array.role == "kinds":
