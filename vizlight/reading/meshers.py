@@ -130,7 +130,10 @@ def read_avs(path: Path) -> pv.DataSet:
 
 
 #: Reason why a file is none of Tecplot.
-NO_TECPLOT = "no VARIABLES and ZONE are in it"
+NO_TECPLOT = (
+    "no VARIABLES and ZONE are in it; a table is read as .csv whose first line names its columns, "
+    "such as x, y, z, p"
+)
 #: Corners of a cell of Tecplot by its name.
 _CORNERS = {b"TRIANGLE": 3, b"QUADRILATERAL": 4, b"TETRAHEDRON": 4, b"BRICK": 8}
 
