@@ -368,3 +368,18 @@ def test_rounding_is_no_datum():
     assert {array.name for array in Contents(small).arrays} == {"charge", "permeability", "mass"}
     # It is shown where somebody asks for it.
     assert vizlight.look(mesh, array="w").array == "w"
+
+
+@pytest.mark.parametrize("of_cells", [False, True])
+def test_values_hidden_in_a_box_of_cells_without_common_points_are_those_of_a_volume(of_cells):
+    """As those of a discontinuous field: all of its points are on the faces of cells."""
+    box = pv.ImageData(dimensions=(11, 11, 11)).cast_to_unstructured_grid()
+    cells = box.separate_cells()
+    assert cells.n_points == 8 * cells.n_cells
+    places = cells.cell_centers().points if of_cells else cells.points
+    blob = np.exp(-(np.linalg.norm(places - 5, axis=1) ** 2) / 4)
+    loaded = places[:, 2] * (places[:, 0] - 5.0)
+    for name, values, is_part in (("blob", blob, False), ("bending", loaded, True)):
+        mesh = cells.copy()
+        (mesh.cell_data if of_cells else mesh.point_data)[name] = values
+        assert Contents(mesh).is_part is is_part

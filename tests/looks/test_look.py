@@ -740,12 +740,14 @@ def test_points_of_a_surface_close_it_and_those_in_a_volume_do_not_hide_each_oth
     on_ball /= np.linalg.norm(on_ball, axis=1, keepdims=True)
     within = random.uniform(-1, 1, (2000, 3))
     sizes = []
-    for points in (on_ball, within):
+    for points in (on_ball, within, within[:40] * [1, 1, 0]):
         (drawn,) = vizlight.look(pv.PolyData(points), size=(600, 400)).drawing.layers
         sizes.append(drawn.keywords["point_size"])
     # 2000 points on a ball some 300 pixels wide are 12 pixels apart, those in front of it.
     assert 10 < sizes[0] < 20
     assert sizes[1] < 6
+    # Few points are as large as their colours need to be read.
+    assert sizes[2] == 20
 
 
 def test_a_title_is_the_name_of_a_file_and_no_word_of_a_reader(tmp_path):

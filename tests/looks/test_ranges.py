@@ -2,8 +2,15 @@
 
 import numpy as np
 import pytest
+import pyvista as pv
 
-from vizlight.looks.ranges import Range, range_of_turn, range_shown
+from vizlight.looks.ranges import (
+    Range,
+    range_of_turn,
+    range_shown,
+    share_beyond,
+    with_regions,
+)
 
 RANDOM = np.random.default_rng(3)
 
@@ -140,3 +147,43 @@ def test_values_on_both_sides_of_0_have_it_in_their_middle():
 def test_directions_have_a_whole_turn(low, high, ends):
     turn = range_of_turn(np.array([low, high], dtype=float))
     assert (turn and turn[:2]) == ends
+
+
+def test_one_value_is_apart_only_where_none_is_near():
+    """As recharges in zones, of which one is the least of a smooth range."""
+    zones = np.repeat([168.0, 170, 171, 172, 175, 178], [60, 150, 150, 250, 100, 60])
+    near = np.concatenate([zones, np.linspace(168, 178, 90)])
+    assert range_shown(near) == Range(168, 178)
+
+
+def test_a_value_farther_than_all_others_reach_is_apart_however_many_have_it():
+    values = np.concatenate([np.full(3000, -99900.0), RANDOM.uniform(-7, 60, 1000)])
+    shown = range_shown(values)
+    assert (shown.apart, shown.clipped) == (True, (True, False))
+    assert -10 <= shown.low <= -6
+    assert 59 <= shown.high <= 65
+
+
+def test_the_range_is_not_that_of_rounding():
+    values = np.concatenate([1 + 1e-15 * RANDOM.normal(size=4000), RANDOM.uniform(0.6, 1.5, 700)])
+    shown = range_shown(values)
+    assert shown.low <= values.min() <= values.max() <= shown.high
+
+
+@pytest.mark.parametrize("of_cells", [False, True])
+def test_the_range_is_clipped_of_noise_and_not_of_a_region(of_cells):
+    sheet = pv.ImageData(dimensions=(101, 101, 1))
+    size = sheet.n_cells if of_cells else sheet.n_points
+    places = sheet.cell_centers().points if of_cells else sheet.points
+    is_bump = np.linalg.norm(places - (50, 50, 0), axis=1) < 14
+    bump = RANDOM.normal(0, 0.1, size) + 5 * is_bump
+    noise = np.where(is_bump[RANDOM.permutation(size)], bump.max(), bump - 5 * is_bump)
+    for values, clipped in ((bump, False), (noise, True)):
+        shown = range_shown(values)
+        assert any(shown.clipped)
+
+        def beyond(ends, values=values):
+            outside = (values < ends.low) | (values > ends.high)
+            return share_beyond(sheet, outside, of_cells=of_cells)
+
+        assert any(with_regions(shown, values, beyond).clipped) == clipped

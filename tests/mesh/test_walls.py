@@ -54,3 +54,11 @@ def test_walls_beside_quadratic_cells():
     walls = files.walls(pv.merge([far, shell], merge_points=False))
     np.testing.assert_allclose(np.linalg.norm(walls.points, axis=1), 1.0, rtol=1e-6)
     assert walls.n_cells == files.walls(shell).n_cells
+
+
+def test_faces_whose_corners_are_at_one_place_are_none():
+    hexahedron = pv.ImageData(dimensions=(3, 3, 3)).cast_to_unstructured_grid()
+    # The sides of a wedge that is written as a hexahedron.
+    flat = hexahedron.points[:, 0] == 2
+    hexahedron.points[flat, 2] = 0
+    assert not files.walls(hexahedron).n_cells

@@ -52,6 +52,9 @@ def test_orbitals_are_arrays_of_their_numbers(tmp_path):
     assert meaning.line(mesh) == "x, y, z in angstroms"
     assert mesh["orbital 5"].max() == 46
     np.testing.assert_array_equal(mesh["orbital 6"], mesh["orbital 5"] + 1)
+    # Molden has the line after a positive number of atoms too.
+    single = vizlight.read(written(tmp_path, orbitals="1 7"))
+    assert single["orbital 7"].max() == 23
 
 
 @pytest.mark.parametrize(

@@ -22,10 +22,10 @@ def element(group, number, kind, value, *, named=True):
     return start + kind + struct.pack("<H", len(value)) + value
 
 
-def written(path, *, modality=b"CT", named=True, frames=1, more=b""):
+def written(path, *, modality=b"CT", named=True, frames=1, more=b"", packed=b""):
     """Write an image of 20 rows of 16 tones, and return its path."""
     values = np.random.default_rng(0).integers(900, size=320 * frames, dtype="<i2").tobytes()
-    syntax = b"1.2.840.10008.1.2.1\0" if named else b"1.2.840.10008.1.2\0"
+    syntax = packed or (b"1.2.840.10008.1.2.1\0" if named else b"1.2.840.10008.1.2\0")
     meta = element(2, 0x10, b"UI", syntax)
     short = struct.Struct("<H").pack
     rows = [
@@ -73,3 +73,11 @@ def test_of_several_frames_the_first_is_noted_and_segments_are_no_tones(tmp_path
     assert said.notes == ["the first of 3 frames, which may be tiles of one image"]
     assert not said.axes
     assert not vizlight.read(path).field_data.get("unit", [])
+
+
+def test_packed_values_are_named_with_the_program_that_unpacks_them(tmp_path):
+    path = written(tmp_path / "a.dcm", packed=b"1.2.840.10008.1.2.5\0")
+    with pytest.raises(
+        vizlight.files.FileError, match="packed.*gdcmconv --raw 'a.dcm' 'a-raw.dcm'"
+    ):
+        vizlight.read(path)

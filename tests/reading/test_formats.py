@@ -119,11 +119,20 @@ def test_a_file_of_no_grid(tmp_path):
         grid_file(tmp_path / "a.nc", [1, 2, 3], series=np.ones(3))
 
 
-def test_other_files_of_hdf5_are_refused_with_a_way_out(tmp_path):
+@pytest.mark.parametrize(
+    ("attribute", "words"),
+    [
+        ("", "HDF5 of an unknown program; look at a mesh of"),
+        ("elangle", r"radar's volume of ODIM; xradar makes .*open_odim_datatree\('a.h5'\), 'a.nc'"),
+        ("mdtraj", r"MDTraj; it writes a state as .pdb: mdtraj.load\('a.h5'\)"),
+    ],
+)
+def test_other_files_of_hdf5_are_refused_with_a_way_out(attribute, words, tmp_path):
     h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["field"] = np.zeros((2, 3))
-    with pytest.raises(files.FileError, match="HDF5 of an unknown program; look at a mesh of"):
+        file["field"].attrs[attribute or "unit"] = 1.0
+    with pytest.raises(files.FileError, match=words):
         vizlight.read(tmp_path / "a.h5")
 
 

@@ -120,6 +120,20 @@ def test_a_backbone_is_one_closed_surface_for_each_piece_of_a_chain(tmp_path):
     assert one.active_scalars_name == "residue"
 
 
+@pytest.mark.parametrize(("count", "element", "long"), [
+    (24, "C", False), (25, "C", True), (59, "P", False), (60, "P", True),
+])  # fmt: skip
+def test_a_small_protein_has_a_fold_and_a_short_nucleic_acid_has_bases(
+    count, element, long, tmp_path
+):
+    lines = "".join(helix(count, "A"))
+    if element == "P":
+        lines = lines.replace(" CA ", " P  ").replace("GLY", " DG").replace(" C  ", " P  ")
+    mesh = vizlight.read(written(tmp_path, lines, "small.pdb"))
+    assert np.count_nonzero(mesh["backbone_mask"]) == count
+    assert molecules.is_polymer(mesh) is long
+
+
 def pieces(surface):
     return len({*surface.connectivity()["RegionId"]})
 

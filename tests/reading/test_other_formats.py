@@ -52,6 +52,9 @@ def test_grib_of_any_name_and_other_files_are_left_to_readers(tmp_path):
         ("a.dat", bytes.fromhex("ec2b0800") + bytes(16), "a restart of SU2"),
         ("a.hdf", bytes.fromhex("0e031301") + bytes(16), "HDF4, as of MODIS"),
         ("a.xml", b"<q:quakeml xmlns:q='a'></q:quakeml>", "no mesh of DOLFIN"),
+        ("a.cdf", bytes.fromhex("cdf30001") + bytes(16), "CDF of NASA"),
+        ("a.msh", b"# of a run\nMESH dimension 2 ElemType Triangle Nnode 3\n", "a mesh of GiD"),
+        ("a.cdb", b"/PREP7\n", "ansys-mapdl-reader makes a .vtu of it"),
         ("a.he5", b"", "look at an array of it by xarray"),
     ],
 )

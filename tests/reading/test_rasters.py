@@ -144,14 +144,29 @@ def test_pixels_without_a_place_have_no_unit_of_one(tmp_path):
 
 @pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
 def test_a_picture_of_a_camera_is_no_relief(tmp_path):
-    rows = HEIGHTS.astype(np.uint16)[None]
+    rows = {"": HEIGHTS.astype(np.uint16)[None], "bytes": (HEIGHTS / 8).astype(np.uint8)[None]}
+    rows["bands"] = np.concatenate([rows[""], 2 * rows[""]])
     shown = {}
-    for name, options in (("cells", {"transform": None, "crs": None}), ("ground", {})):
-        look = vizlight.look(written(tmp_path / f"{name}.tif", rows, **options))
-        shown[name] = (look.question, look.notes[0].partition(",")[0])
+    # A model of a camera has a system of reference, and values without a picture are masked.
+    cases = {
+        "cells": {"transform": None, "crs": None},
+        "model": {"transform": None, "nodata": 0},
+        "bytes": {},
+        "bands": {},
+        "ground": {},
+    }
+    for name, options in cases.items():
+        path = written(tmp_path / f"{name}.tif", rows.get(name, rows[""]), **options)
+        look = vizlight.look(path)
+        is_gray = "gray" in str(look.drawing.keys[0].get("cmap"))
+        shown[name] = (look.question, look.notes[0].partition(",")[0], is_gray)
+    # Tones of a smooth picture are in no bands between isolines.
     assert shown == {
-        "cells": ("none", "x to the right"),
-        "ground": ("relief", "x east in metre by the reference system"),
+        "cells": ("none", "x to the right", True),
+        "model": ("none", "x to the right", True),
+        "bytes": ("none", "x east in metre by the reference system", True),
+        "bands": ("none", "x east in metre by the reference system", True),
+        "ground": ("relief", "x east in metre by the reference system", False),
     }
 
 
@@ -159,13 +174,15 @@ def test_a_picture_of_a_camera_is_no_relief(tmp_path):
     ("name", "rows"),
     [
         ("scene_B4", HEIGHTS),
+        ("wide_counts", 1e6 * HEIGHTS),
         ("ndvi_2020", HEIGHTS / 1e4),
         ("a", HEIGHTS * 40),
         ("population-density", HEIGHTS),
     ],
 )
 def test_a_band_of_a_satellite_is_no_relief(tmp_path, name, rows):
-    kind = np.float32 if name.startswith("ndvi") else np.uint16
+    of_name = {"ndvi": np.float32, "wide": np.uint32}
+    kind = of_name.get(name.partition("_")[0], np.uint16)
     look = vizlight.look(written(tmp_path / f"{name}.tif", rows.astype(kind)[None]))
     assert (look.question, look.array) == ("none", name)
 

@@ -15,6 +15,7 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow
 
 import vizlight
 from vizlight import _supervise, _trials, files
+from vizlight.mesh import meaning
 from vizlight.reading import formats, reader
 
 PLY = b"ply\nformat binary_little_endian 1.0\nelement vertex 3\n%s\nend_header\n"
@@ -430,11 +431,14 @@ def test_xdmf_without_times_is_read(tmp_path):
     assert vizlight.read(path).volume == pytest.approx(1 / 6)
 
 
-def test_sets_of_exodus_are_no_blocks(tmp_path, monkeypatch):
+def test_sets_of_exodus_are_no_blocks_which_are_kinds(tmp_path, monkeypatch):
     plane = pv.Plane(i_resolution=2, j_resolution=2)
+    plane.clear_data()
+    shell, rest = plane.copy(), plane.translate((1, 0, 0))
+    shell.cell_data["ObjectId"], rest.cell_data["ObjectId"] = np.full((2, 4), [[10], [4]], np.int32)
     found = pv.MultiBlock(
         {
-            "Element Blocks": pv.MultiBlock({"shell": plane}),
+            "Element Blocks": pv.MultiBlock({"inner shell": shell, "Unnamed block ID: 4": rest}),
             "Side Sets": pv.MultiBlock({"top": plane.copy(), "edge": pv.Line()}),
         }
     )
@@ -445,7 +449,12 @@ def test_sets_of_exodus_are_no_blocks(tmp_path, monkeypatch):
     path = tmp_path / "a.vtpd"
     path.touch()
     (part,) = files.read_parts(path)
-    assert part.n_cells == 4
+    assert part.n_cells == 8
+    assert meaning.flags(part, "block") == {10: "inner shell", 4: "4"}
+    assert vizlight.look(part).array == "block"
+    del found["Element Blocks"][1]
+    (part,) = files.read_parts(path)
+    assert "block" not in part.cell_data
 
 
 def test_points_that_float32_does_not_resolve_are_noted(tmp_path):

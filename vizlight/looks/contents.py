@@ -91,6 +91,9 @@ _LOAD_WORDS = {
 #: Most points of a solid whose surface is looked at, and the share of its points on its surface
 #: from which that shows what is inside as well.
 MOST_ON_SURFACE, OUTSIDE = 300_000, 0.3
+#: Share of its volume by which a mesh and its box differ at most where it fills it, and share of
+#: the spread of values on the sides of the box below which the others are hidden inside.
+SAME, HIDDEN = 0.01, 0.3
 #: Points or cells that are looked at for arrays that tell the place, fewest of a mesh for that, and
 #: largest difference from such an array as a share of the range of its values.
 PLACES, FEWEST_PLACES, ROUNDING = 100, 30, 1e-4
@@ -224,7 +227,26 @@ class Contents:
             return False
         if self.mesh.n_points > MOST_ON_SURFACE:
             return False
-        return len(blocks.outer_surface(self.mesh)[1]) >= OUTSIDE * self.mesh.n_points
+        on_surface = len(blocks.outer_surface(self.mesh)[1]) >= OUTSIDE * self.mesh.n_points
+        return on_surface and not self._is_hidden_in_box
+
+    @property
+    def _is_hidden_in_box(self) -> bool:
+        """Whether the mesh fills its box, on whose sides the values of the best array are alike.
+
+        Where cells share no points, or have smaller neighbours, most points are on faces of one.
+        """
+        mesh, array = self.mesh, next(iter(self.arrays), None)
+        box = float(np.prod(mesh.bounds_size))
+        if array is None or array.role != "values" or abs(mesh.volume - box) > SAME * box:
+            return False
+        rows = mesh.cell_data_to_point_data() if array.of_cells else mesh
+        values = np.asarray(rows.point_data[array.name], dtype=np.float64)
+        ends = np.reshape(mesh.bounds, (3, 2))
+        places = np.asarray(mesh.points, dtype=np.float64)[..., np.newaxis]
+        on_box = (np.abs(places - ends) < SAME / 100 * mesh.length).any(axis=(1, 2))
+        spreads = [np.ptp(np.nanpercentile(part, (1, 99))) for part in (values[on_box], values)]
+        return bool(spreads[0] < HIDDEN * spreads[1])
 
     @cached_property
     def arrays(self) -> tuple[Named, ...]:

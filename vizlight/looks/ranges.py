@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+import pyvista as pv
 
-from vizlight._types import Array
+from vizlight._types import Array, Bools
 from vizlight.draw.ticks import even_ends
 from vizlight.maps import TWO_SIDED
 
@@ -25,14 +27,19 @@ BELOW_PEAKS, FREED_BY_PEAKS = 99.5, 0.3
 SKEWED, DECADES = 10.0, 100.0
 #: Percentiles of positive values, and the ratio between them from which a bar is logarithmic.
 ENDS, WIDE = (2, 98), 10.0
-#: Share of the values that are one value far outside, from which it stands for a region apart.
-APART = 0.01
+#: Share of the values that are one value far outside, from which it stands for a region apart, and
+#: its least distance from others: as a share of the bar, and where it is any share of the values in
+#: lengths of the others' range.
+APART, GAP, FAR = 0.01, 0.1, 20.0
+#: Share of a mesh beyond the ends, away from its borders, from which it is a region and no noise,
+#: and the most that the whole range of values is of that of most.
+REGION, STRETCHED = 0.01, 20.0
 #: Percentile of the values of a scan from which on they are white.
 BRIGHTEST = 99
 #: Share of amounts that are 0, or too small for a logarithmic bar, from which these are the ground
 #: of a map, and the least amount that is none as a share of the largest, on other bars.
 MOSTLY_NONE, LEAST_AMOUNT = 0.1, 0.05
-#: Share of the largest amount below 0 that is an error of rounding.
+#: Share of the largest amount below 0, or of the range of all values, that is an error of rounding.
 NOISE = 1e-6
 #: First digits of the classes of a logarithmic bar, whose ratios are much alike.
 DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
@@ -145,6 +152,12 @@ def range_shown(
         few others take much of the bar; of decades where lengths are skewed.
     """
     low, high = float(values.min()), float(values.max())
+    others = values[values > low]
+    if len(values) - len(others) > APART * len(values) and len(others):
+        next_low = float(others.min())
+        if next_low - low > FAR * (high - next_low) > 0:
+            shown = range_shown(others, lengths=lengths, amounts=amounts, decades=decades)
+            return shown._replace(clipped=(True, shown.clipped[1]), apart=True)
     first, median, third = np.percentile(values, (25, 50, 75))
     if (lengths or amounts) and low >= -NOISE * high < 0:
         usual, top = np.percentile(values[values > 0], (50, 98))
@@ -175,13 +188,17 @@ def range_shown(
     step = (fences[1] - fences[0]) / 10 if first < median < third else 0.0
     below, above = values < fences[0], values > fences[1]
     cut = bool(below.any()), bool(above.any())
-    if step and all(cut) and np.mean(below | above) > MOST_OUTSIDE:
+    outside = np.mean(below | above)
+    if outside > FEW and third - first < NOISE * (high - low):
+        # Most values differ by rounding alone: the others are the data.
+        step = 0.0
+    if step and all(cut) and outside > MOST_OUTSIDE:
         return _between_tails(values)
     least = np.isclose(values, low, atol=0.01 * (fences[1] - fences[0]))
     apart = least.sum() > max(APART * len(values), 0.5 * below.sum())
-    is_apart = cut[0] and bool(apart)
+    is_near = np.any(~least & (values < low + GAP * (fences[1] - fences[0])))
+    is_apart = cut[0] and bool(apart) and not is_near
     freed = 1 - (fences[1] - fences[0]) / ((high - low) or 1.0)
-    outside = np.mean(below | above)
     needed = LEAST_FREED if outside <= FEW else FREED_BY_MANY[all(cut)]
     if not step or outside > MOST_OUTSIDE or (freed < needed and not is_apart):
         top = float(np.percentile(values, BELOW_PEAKS))
@@ -193,6 +210,53 @@ def range_shown(
         _rounded(fences[1] if cut[1] else high, step, np.ceil),
     )
     return Range(*ends, clipped=cut, apart=is_apart)
+
+
+def with_regions(shown: Range, values: Array, beyond: Callable[[Range], float]) -> Range:
+    """Return a range that ends where most values do, or that of all where regions lie beyond.
+
+    Parameters
+    ----------
+    shown : Range
+    values : ndarray
+        Finite values, one at least.
+    beyond : callable
+        Returns the share of the mesh in regions beyond the ends of a range.
+    """
+    if not any(shown.clipped) or shown.logarithmic or shown.apart or shown.ground:
+        return shown
+    whole = Range(*even_ends(float(values.min()), float(values.max())))
+    is_near = whole.high - whole.low < STRETCHED * (shown.high - shown.low)
+    return whole if is_near and beyond(shown) > REGION else shown
+
+
+def share_beyond(mesh: pv.DataSet, beyond: Bools, *, of_cells: bool) -> float:
+    """Return the share of a mesh in cells whose points, and their cells, are all beyond an end.
+
+    Values of noise are alone, so that their cells have others too.
+
+    Parameters
+    ----------
+    mesh : pyvista.DataSet
+    beyond : ndarray
+        Whether each value is beyond an end.
+    of_cells : bool
+        Whether they are those of cells.
+    """
+    flags = mesh.copy(deep=False)
+    flags.clear_data()
+    if of_cells:
+        flags.cell_data["beyond"] = beyond.astype(np.float64)
+        beyond = np.asarray(flags.cell_data_to_point_data()["beyond"]) > 1 - NOISE
+    flags.clear_data()
+    flags.point_data["beyond"] = beyond.astype(np.float64)
+    inside = np.asarray(flags.point_data_to_cell_data()["beyond"]) > 1 - NOISE
+    sized = flags.compute_cell_sizes()
+    for name in ("Volume", "Area", "Length"):
+        sizes = np.abs(np.asarray(sized.cell_data[name]))
+        if total := float(sizes.sum()):
+            return float(sizes[inside].sum()) / total
+    return 0.0
 
 
 def _between_tails(values: Array) -> Range:

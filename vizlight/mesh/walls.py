@@ -97,13 +97,15 @@ def _joined(volume: pv.DataSet) -> pv.PolyData:
     if not surface.n_cells or surface.n_cells > surface.GetNumberOfPolys():
         return pv.PolyData()
     surface.cell_data[_OUTWARD] = surface.cell_centers().points - surface.cell_data[_OUTWARD]
-    surface = surface.clean(tolerance=ROUNDING * surface.length, absolute=True)
+    # Faces without an area are left out below, and are no lines, which would be numbered before.
+    tolerance = ROUNDING * surface.length
+    surface = surface.clean(tolerance=tolerance, absolute=True, polys_to_lines=False)
     ids, ends = connectivity(surface.GetPolys())
     # The sum of random numbers of its corners, in any order, stands for a face.
     numbers = np.random.default_rng(0).integers(1 << 62, size=surface.n_points)
     sums = np.add.reduceat(numbers[ids], ends[:-1])
     _, first, counts = np.unique(sums, return_inverse=True, return_counts=True)
-    return _faces(surface, counts[first] == 1)
+    return _faces(surface, (counts[first] == 1) & (np.diff(ends) > 2))
 
 
 def _faces(surface: pv.PolyData, which: Bools) -> pv.PolyData:

@@ -38,18 +38,20 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
         head = [file.readline() for _ in range(6)]
         first, *origin = head[2].split()[:4]
         axes = [line.split()[:4] for line in head[3:]]
-        # A negative number of atoms says that a line with the numbers of orbitals follows them.
-        has_orbitals, n_atoms = int(first) < 0, abs(int(first))
+        n_atoms = abs(int(first))
         atoms: Array = np.array([file.readline().split()[:5] for _ in range(n_atoms)], np.float64)
         words = file.read().split()
-    numbers = ["0"]
-    if has_orbitals:
-        count = int(words[0])
-        numbers, words = words[1 : 1 + count], words[1 + count :]
     counts = [int(axis[0]) for axis in axes]
     # A negative number of voxels says that lengths are in angstroms.
     unit = 1.0 if counts[0] < 0 else BOHR
     shape = tuple(map(abs, counts))
+    numbers = ["0"]
+    # A negative number of atoms says that a line with the numbers of orbitals follows them, which
+    # Molden writes after a positive number too.
+    has_orbitals = int(first) < 0 or len(words) == np.prod(shape) + 2
+    if has_orbitals:
+        count = int(words[0])
+        numbers, words = words[1 : 1 + count], words[1 + count :]
     affine: Array = np.eye(4)
     affine[:3, :3] = unit * np.array([axis[1:] for axis in axes], dtype=np.float64).T
     affine[:3, 3] = unit * np.array(origin, dtype=np.float64)

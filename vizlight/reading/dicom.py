@@ -13,7 +13,7 @@ import pyvista as pv
 
 from vizlight.mesh import meaning
 from vizlight.mesh.georeference import UNIT
-from vizlight.reading import series
+from vizlight.reading import file_parts, series
 
 #: Bytes of a file in which its header is sought, and before its first element.
 _HEAD, _PREAMBLE = 1 << 20, 132
@@ -30,6 +30,8 @@ _SIZES = ((0x0018, 0x1164), (0x0028, 0x0030))
 #: Syntaxes in which elements do not name their kinds, and in which the header cannot be read: with
 #: the bytes of numbers in the other order, and packed.
 _IMPLICIT, _OTHER = "1.2.840.10008.1.2", ("1.2.840.10008.1.2.2", "1.2.840.10008.1.2.1.99")
+#: Begins of syntaxes with packed values, which VTK does not unpack.
+_PACKED = ("1.2.840.10008.1.2.4", "1.2.840.10008.1.2.5")
 #: Group of the parts of a sequence, and length of one that ends by a mark.
 _PARTS, _OPEN = 0xFFFE, 0xFFFFFFFF
 
@@ -43,13 +45,19 @@ def read(path: Path) -> pv.DataSet:
     ----------
     path : pathlib.Path
         Path of the file; of several frames the first is read, with a note.
+
+    Raises
+    ------
+    ValueError
+        If its values are packed.
     """
-    image: pv.DataSet = series.unchecked(pv.get_reader(path))  # type: ignore[no-untyped-call]
-    with path.open("rb") as file:
-        begin = file.read(_HEAD)
     header: dict[tuple[int, int], str] = {}
-    for tag, value in _elements(begin):
+    for tag, value in _elements(file_parts.first_bytes(path, _HEAD)):
         header.setdefault(tag, value)
+    if header.get(_SYNTAX, "").startswith(_PACKED):
+        way = f"GDCM unpacks them: gdcmconv --raw '{path.name}' '{path.stem}-raw.dcm'"
+        raise ValueError(f"its values are packed, as by JPEG or run lengths; {way}")
+    image: pv.DataSet = series.unchecked(pv.get_reader(path))  # type: ignore[no-untyped-call]
     modality, unit = (header.get(tag, "") for tag in (_MODALITY, _UNIT_OF_VALUES))
     said = meaning.of(image)
     # Segments and doses are no photographs, whose values are tones.

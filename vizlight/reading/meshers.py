@@ -130,7 +130,10 @@ def read_avs(path: Path) -> pv.DataSet:
 
 
 #: Reason why a file is none of Tecplot.
-NO_TECPLOT = "no VARIABLES and ZONE are in it"
+NO_TECPLOT = (
+    "no VARIABLES and ZONE are in it; a table is read as .csv whose first line names its columns, "
+    "such as x, y, z, p"
+)
 #: Corners of a cell of Tecplot by its name.
 _CORNERS = {b"TRIANGLE": 3, b"QUADRILATERAL": 4, b"TETRAHEDRON": 4, b"BRICK": 8}
 
@@ -165,17 +168,6 @@ def missing_of_tecplot(file: BinaryIO) -> str:
 
 
 _IJK = (b"I", b"J", b"K")
-
-
-def missing_of_mdpa(file: BinaryIO) -> str:
-    """Compare the ends of blocks with their begins; meshio goes on past the end of the file."""
-    blocks, wrong = list[bytes](), "its blocks do not end as they begin"
-    for word, name in re.findall(rb"(?m)^[ \t]*(Begin|End)[ \t]+(\w+)", file.read()):
-        if word == b"Begin":
-            blocks.append(name)
-        elif not blocks or blocks.pop() != name:
-            return wrong
-    return wrong if blocks else ""
 
 
 def missing_of_avs(file: BinaryIO) -> str:

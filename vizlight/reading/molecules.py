@@ -38,8 +38,9 @@ CELL, NAME = "unit_cell", "molecule"
 _FORMULAS = (
     "_chemical_name_mineral", "_chemical_formula_structural", "_chemical_formula_sum",
 )  # fmt: skip
-#: Name of their marks, and number of them from which a molecule is a long chain.
-BACKBONE, LONG = "backbone_mask", 60
+#: Name of their marks, and numbers of them from which a molecule is a long chain: of all, and of
+#: those of a protein, which folds from about as many on.
+BACKBONE, LONG, FOLDED = "backbone_mask", 60, 25
 #: Mark of the oxygen of an amino acid, and its largest distance in angstroms from its carbon.
 OXYGEN, _NEAR = 2, 3.0
 #: Length from which a word of a name is no abbreviation.
@@ -309,8 +310,11 @@ def attach_chains(
 
 def is_polymer(mesh: pv.DataSet) -> bool:
     """Return whether a mesh is a molecule with long chains of residues."""
-    marks = mesh.point_data.get(BACKBONE)
-    return marks is not None and int(np.count_nonzero(marks == 1)) >= LONG
+    marks, elements = (mesh.point_data.get(name) for name in (BACKBONE, "atom_type"))
+    if marks is None or elements is None:
+        return False
+    of_protein = np.asarray(elements)[marks == 1] == PROTEIN
+    return len(of_protein) >= LONG or int(np.count_nonzero(of_protein)) >= FOLDED
 
 
 def backbone(atoms: pv.PolyData, /) -> pv.PolyData:

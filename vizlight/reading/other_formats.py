@@ -31,6 +31,9 @@ WAYS: dict[tuple[str, ...], str] = {
     (".geojson", ".topojson", ".gpkg", ".shp", ".kml"):
         "GDAL makes a raster of a number of its features: "
         "gdal_rasterize -a NAME -ts 1000 1000 '{name}' '{stem}.tif'",
+    (".cdb",):
+        "ansys-mapdl-reader makes a .vtu of it: "
+        "ansys.mapdl.reader.Archive('{name}').grid.save('{stem}.vtu')",
     (".blend", ".fbx", ".ifc", ".x3d"):
         "Assimp makes a .glb of it: assimp export '{name}' '{stem}.glb'",
 }  # fmt: skip
@@ -52,6 +55,16 @@ CONTENTS: dict[tuple[str, ...], tuple[tuple[re.Pattern[bytes], str], ...]] = {
     (".xml",): ((
         re.compile(rb"(?s)(?!.*<dolfin)"),
         "no mesh of DOLFIN, of which files of this name are read; write its numbers as .csv",
+    ),),
+    (".cdf",): ((
+        re.compile(rb"\xcd\xf3\0\x01|\xcd\xf2\x60\x02"),
+        "CDF of NASA; cdflib makes a dataset of it: "
+        "vizlight.look(cdflib.xarray.cdf_to_xarray('{name}'))",
+    ),),
+    (".msh",): ((
+        re.compile(rb"(?i)(\s*#[^\n]*\n)*\s*mesh\b"),
+        "a mesh of GiD; the program that computes on it writes .vtk, as Kratos by its "
+        "vtk_output_process",
     ),),
     (".hdf", ".h5", ".nc"): ((
         re.compile(rb"\x0e\x03\x13\x01"),

@@ -84,9 +84,8 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
                 return stack
             arrays, units, kinds = _bands(file, path.name.split(".")[0])
             grid, turned = _grid(file)
-            # A picture with a model of its camera has a system, but its pixels have no place.
-            crs = None if file.transform.is_identity else file.crs
             on_page = _has_no_place(file)
+            crs = None if on_page else file.crs
             axes = meaning.PAGE if on_page else ["x east", "y north"]
     words, said = [], meaning.Meaning(axes=axes)
     for name, rows in arrays.items():
@@ -245,7 +244,7 @@ def _is_picture(file: Foreign) -> bool:
 
 def _has_no_heights(file: Foreign, stem: str, rows: Raw) -> bool:
     """Return whether a band is no heights by its name, by counts beyond them, or its flatness."""
-    counts = file.dtypes[0] == "uint16" and float(np.nanmax(rows, initial=0)) > HIGHEST
+    counts = file.dtypes[0].startswith("uint") and float(np.nanmax(rows, initial=0)) > HIGHEST
     if counts or _NO_HEIGHTS.search(stem.lower()) is not None:
         return True
     degrees = file.crs is not None and file.crs.is_geographic
@@ -256,7 +255,8 @@ def _has_no_heights(file: Foreign, stem: str, rows: Raw) -> bool:
 
 def _has_no_place(file: Foreign) -> bool:
     """Return whether the pixels of a file have no place on the ground."""
-    return bool(file.transform.is_identity) and file.crs is None
+    # A picture with a model of its camera has a system of reference, but no place in it.
+    return bool(file.transform.is_identity)
 
 
 def _of_classes(rows: Raw) -> bool:

@@ -54,6 +54,8 @@ Y_UP = (".glb", ".gltf", ".vrml", ".wrl")
 EXODUS = (
     "Element Blocks", "Side Sets", "Node Sets", "Face Sets", "Edge Sets", "Element Sets",
 )  # fmt: skip
+#: Name that VTK gives to the numbers of blocks of Exodus at their cells.
+_OF_BLOCKS = "ObjectId"
 #: Largest number of points of a mesh: half of the addresses that processors have.
 MOST_POINTS = 1 << 40
 #: Largest rounding of points in a file of float32, as a share of the shortest side of a cell, and
@@ -274,8 +276,21 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
 def _of_hdf(path: Path) -> str:
     """Return the name of the format of an HDF5 file that is not read, and a way to its mesh."""
     content = path.read_bytes()
+    if b"mdtraj" in content.lower():
+        return (
+            "a trajectory of MDTraj; it writes a state as .pdb: "
+            f"mdtraj.load('{path.name}')[0].save('{path.stem}.pdb')"
+        )
+    if b"elangle" in content:
+        return (
+            "a radar's volume of ODIM; xradar makes CfRadial of it: xradar.io.to_cfradial1("
+            f"xradar.io.open_odim_datatree('{path.name}'), '{path.stem}.nc')"
+        )
     if b"topology" in content and (b"geometry" in content or b"coordinates" in content):
-        return "a mesh of FEniCS; FEniCS writes a .xdmf file with it: XDMFFile(...).write(mesh)"
+        return (
+            "a mesh without its .xdmf file, which is read, and which programs write with it, as "
+            "FEniCS by XDMFFile(...).write(mesh)"
+        )
     return "HDF5 of an unknown program; look at a mesh of arrays that h5py reads"
 
 
@@ -431,6 +446,7 @@ def _whole(
     if isinstance(data, pv.MultiBlock):
         joined = blocks.highest(data)
         mesh = joined.grid
+        _name_blocks(mesh, data)
         notes += [note] if (note := joined.note()) else []
     if isinstance(mesh, pv.DataSet):
         normals.drop_empty(mesh)
@@ -478,6 +494,21 @@ def _whole(
     if suffix in SOUPS and isinstance(mesh, pv.PolyData):
         normals.keep_normals(mesh)
     return mesh
+
+
+def _name_blocks(mesh: pv.DataSet, data: pv.MultiBlock) -> None:
+    """Give the numbers of several blocks of Exodus their names, as those of kinds of cells."""
+    ids = mesh.cell_data.get(_OF_BLOCKS)
+    if ids is None or len(there := np.unique(ids)) < 2:
+        return
+    said, words = meaning.of(mesh), dict[int, str]()
+    for block, path in blocks.named_blocks(data):
+        if _OF_BLOCKS in block.cell_data and (number := block.cell_data[_OF_BLOCKS][0]) in there:
+            name = path.rpartition("/")[2].removeprefix("Unnamed block ID: ")
+            words[int(number)] = f"{number}:{'_'.join(name.split())}"
+    mesh.rename_array(_OF_BLOCKS, "block", preference="cell")
+    said.arrays["block"] = {"flags": " ".join(words.values())}
+    meaning.attach(mesh, said)
 
 
 def _has_points_outside(mesh: pv.UnstructuredGrid) -> bool:

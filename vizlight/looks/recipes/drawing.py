@@ -24,7 +24,13 @@ from vizlight.looks import levels, map_parts
 from vizlight.looks.contents import Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, MODELS, Viewpoint, eye_around, eye_of
-from vizlight.looks.ranges import range_of_scan, range_of_turn, range_shown
+from vizlight.looks.ranges import (
+    range_of_scan,
+    range_of_turn,
+    range_shown,
+    share_beyond,
+    with_regions,
+)  # fmt: skip
 from vizlight.looks.steps import DISPLACED, Step
 from vizlight.maps import CYCLIC, MISSING
 from vizlight.mesh import dates, georeference, globes, meaning
@@ -567,6 +573,7 @@ class Case:
         *,
         unit: float = 1.0,
         scan: bool = False,
+        beyond: Callable[[Range], float] | None = None,
         **kind: bool,
     ) -> tuple[Keywords, str]:
         """Return the colours of values in the range that suits them, and words if it is not all.
@@ -583,6 +590,8 @@ class Case:
             Unit in which they are read, in that of the values.
         scan : bool, default: False
             Whether they are those of a scan in grey.
+        beyond : callable, optional
+            Returns the share of regions of the mesh that lie beyond the ends of a range.
         **kind
             Kind of the values, as for :func:`vizlight.looks.ranges.range_shown`.
         """
@@ -596,6 +605,8 @@ class Case:
             return {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors, ""
         kind["decades"] = meaning.is_in_decades(self.data.run(), name)
         shown = range_of_scan(values) if scan else range_shown(values, **kind)
+        if beyond is not None and not scan:
+            shown = with_regions(shown, values, beyond)
         turn = range_of_turn(values) if meaning.is_direction(self.data.run(), name) else None
         if turn is not None:
             shown, cmap = turn, CYCLIC
@@ -628,7 +639,12 @@ class Case:
             return {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors, ""
         rows = np.asarray(mesh.run()[array.name], dtype=np.float64)
         unit, _ = meaning.usual_unit(mesh.run(), array.name, float(np.nanmax(np.abs(rows))))
-        return self.ranged(rows, array.name, cmap, unit=unit, **kind)
+
+        def beyond(shown: Range) -> float:
+            outside = (rows < shown.low * unit) | (rows > shown.high * unit)
+            return share_beyond(mesh.run(), outside, of_cells=array.of_cells)
+
+        return self.ranged(rows, array.name, cmap, unit=unit, beyond=beyond, **kind)
 
     def lit(self, mesh: Step, scene: Step, **light: object) -> Step:
         """Return the step that lights the points of a mesh."""

@@ -49,7 +49,7 @@ BAND = 1.5
 #: that they may fill.
 SQUARE, CROWDED = 8.0, 0.5
 #: Least and largest size of points in pixels, and the share of a picture that they may fill.
-POINT_SIZES, FILLED = (3.0, 14.0), 0.15
+POINT_SIZES, FILLED = (3.0, 20.0), 0.15
 #: Size of the points of a map in distances of neighbours, and most points whose neighbours are
 #: looked for.
 TOUCHING, MOST_ASKED = 1.6, 2000

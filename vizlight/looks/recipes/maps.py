@@ -108,6 +108,8 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
     if isinstance(table, Step) or getattr(table, "log_scale", False):
         return drawing
     asked = case.wishes.draws("isolines")
+    if table == "gray" and not asked:  # an image, whose tones are no steps
+        return drawing
     if flat is None or not (case.map_frame or case.on_globe) or asked is False:
         return drawing
     is_relief = case.question == "relief" and case.wishes.light.get("lit", True)
