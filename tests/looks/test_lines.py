@@ -119,3 +119,36 @@ def test_lines_nearly_all_of_one_bundle_are_shown_by_their_direction(others, sho
     look = vizlight.look(mesh)
     assert shown in look.drawing.words
     assert "colours of group" in vizlight.look(mesh, array="group").drawing.words
+
+
+def test_some_of_the_lines_are_drawn_as_all_are():
+    mesh = tangle(300)
+    mesh.cell_data["group"] = np.arange(300) % 2
+    whole = vizlight.look(mesh, scalars="direction").drawing.layers[0].keywords
+    part = vizlight.look(mesh, threshold="group:1:1").drawing.layers[0]
+    assert part.mesh.run().n_lines == 150
+    assert part.keywords["rgb"]
+    assert part.keywords["line_width"] >= whole["line_width"]
+
+
+def test_colours_of_direction_are_those_of_the_key():
+    mesh = tangle(20)
+    look = vizlight.look(mesh)
+    shown = look.drawing.layers[0].mesh.run()
+    lines = np.diff(mesh.points.reshape(-1, 2, 3), axis=1)[:, 0]
+    shares = np.abs(lines) / np.linalg.norm(lines, axis=1, keepdims=True)
+    np.testing.assert_allclose(shown["rgb"][::2] / 255, shares, atol=0.02)
+
+
+def test_no_words_are_above_a_picture_without_a_title():
+    mesh = tangle(20)
+    assert all(not key.get("title") for key in vizlight.look(mesh, title="")._keys)
+    assert any(key.get("title") for key in vizlight.look(mesh)._keys)
+
+
+def test_a_bar_of_lengths_holds_at_every_depth():
+    mesh = tangle(20)
+    assert not vizlight.look(mesh).view.parallel_projection
+    mesh.field_data["unit"] = ["millimetre"]
+    assert vizlight.look(mesh).view.parallel_projection
+    assert not vizlight.look(mesh, parallel=False).view.parallel_projection

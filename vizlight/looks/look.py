@@ -301,7 +301,8 @@ class Look:
         keys, wishes = self._titled_keys, self.wishes
         if not wishes.picture.get("key", True):
             return []
-        if keys and not any(key.get("title") for key in keys):
+        is_named = wishes.picture.get("title") is not None
+        if keys and not is_named and not any(key.get("title") for key in keys):
             # Cameras of looks leave room for a title.
             keys[0]["title"] = self.drawing.words
         # The key of a lamp that stands somewhere differs from place to place.

@@ -25,6 +25,7 @@ from vizlight.looks.wishes import STYLES, Wishes, direction, scene_step
 from vizlight.mesh import charts, georeference, globes, height_grids, meaning, nspace, stresses
 from vizlight.reading import series
 from vizlight.scene import Scene
+from vizlight.vtk.polylines import has_lines_only
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import PRESETS, required_scene
 from vizlight.shading.options import LightOptions, with_joined_names
@@ -401,4 +402,7 @@ def _kept(mesh: Step, name: str, low: float, high: float) -> Step:
             side["all_scalars"] = True
     step = Step("kept", ".threshold", mesh, ends, scalars=name, **side)
     step.asked = ("threshold", f"{name}, {low:g} to {high:g}")
+    if has_lines_only(grid):
+        # Lines among cells of any kind would have no width by their spacing.
+        step = Step("lines", ".extract_surface", step, algorithm="dataset_surface")
     return step

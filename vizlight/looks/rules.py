@@ -65,7 +65,7 @@ def _is_one_bundle(contents: Contents) -> bool:
     array = contents.first("values", "heights", "kinds") if _is_lines(contents) else None
     if array is None or array.role != "kinds":
         return False
-    return array.distinct > 1 and len(kinds_of(contents.mesh, array.name, 1)) == 1
+    return len(kinds_of(contents.mesh, array.name, 1)) == 1
 
 
 def _is_molecule(contents: Contents) -> bool:

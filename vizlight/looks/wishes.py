@@ -261,7 +261,8 @@ class Wishes:
             toward, parallel = direction(self.view), False
         if up is not None:
             keywords["up"] = up
-        if parallel or self.eye.get("parallel"):
+        # In perspective a bar holds at one depth alone.
+        if self.eye.get("parallel", parallel or bool(self.bar)):
             keywords["parallel"] = True
         if zoom != 1:
             keywords["zoom"] = zoom

@@ -115,9 +115,8 @@ def lines(case: Case) -> Drawing:
             pen = _pen(replace(case, data=longest), camera)
             mesh = longest
         shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
-        # Outlines tell lines apart by themselves; light would make those toward the eye as dark.
-        even = case.lit(mesh, even_light(camera)) if is_dense else lit
-        layer = Layer(_by_direction(even), shown | pen)
+        # The colours are those of the key, which light would change.
+        layer = Layer(_by_direction(case.lit(mesh, even_light(camera))), shown | pen)
         table = Step("", "vizlight.maps.directions", meaning.ways(mesh.run()))
         key: Keywords = {"question": "value", "cmap": table}
         key["title"] = with_file(case.data, "direction")
