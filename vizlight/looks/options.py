@@ -25,11 +25,11 @@ from vizlight.looks.wishes import STYLES, Wishes, direction, scene_step
 from vizlight.mesh import charts, georeference, globes, height_grids, meaning, nspace, stresses
 from vizlight.reading import series
 from vizlight.scene import Scene
-from vizlight.vtk.polylines import has_lines_only
 from vizlight.scene.keywords import unknown_option
 from vizlight.scene.presets import PRESETS, required_scene
 from vizlight.shading.options import LightOptions, with_joined_names
 from vizlight.vtk.cells import dimensions
+from vizlight.vtk.polylines import has_lines_only
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
