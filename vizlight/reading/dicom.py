@@ -13,7 +13,7 @@ import pyvista as pv
 
 from vizlight.mesh import meaning
 from vizlight.mesh.georeference import UNIT
-from vizlight.reading import series
+from vizlight.reading import file_parts, series
 
 #: Bytes of a file in which its header is sought, and before its first element.
 _HEAD, _PREAMBLE = 1 << 20, 132
@@ -45,10 +45,8 @@ def read(path: Path) -> pv.DataSet:
         Path of the file; of several frames the first is read, with a note.
     """
     image: pv.DataSet = series.unchecked(pv.get_reader(path))  # type: ignore[no-untyped-call]
-    with path.open("rb") as file:
-        begin = file.read(_HEAD)
     header: dict[tuple[int, int], str] = {}
-    for tag, value in _elements(begin):
+    for tag, value in _elements(file_parts.first_bytes(path, _HEAD)):
         header.setdefault(tag, value)
     modality, unit = (header.get(tag, "") for tag in (_MODALITY, _UNIT_OF_VALUES))
     said = meaning.of(image)
@@ -63,8 +61,7 @@ def read(path: Path) -> pv.DataSet:
         said.notes.append(f"the first of {int(frames)} frames, which may be tiles of one image")
     elif not header.keys().isdisjoint(_SIZES):
         image.field_data[UNIT] = ["millimetre"]
-    meaning.attach(image, said)
-    return image
+    return meaning.attach(image, said)
 
 
 def _elements(data: bytes) -> Iterator[tuple[tuple[int, int], str]]:
