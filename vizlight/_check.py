@@ -343,8 +343,7 @@ def iterable(name: str, value: object, expected: str) -> None:
 def function(name: str, value: object, *, optional: bool = False) -> None:
     """Check that a value can be called; with ``optional=True`` None is allowed too."""
     if not (callable(value) or (optional and value is None)):
-        expected = "a function" + (" or None" if optional else "")
-        raise type_error(name, expected, value)
+        raise type_error(name, "a function" + (" or None" if optional else ""), value)
 
 
 def vector(name: str, value: object, *, direction: bool = False, n: int | None = None) -> Vector:

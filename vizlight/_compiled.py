@@ -284,10 +284,7 @@ class Kernel(Generic[P, R]):
         """Return the texts that make the code: its own file and its helpers' texts."""
         # numba itself looks at the function's own file alone, and would keep code with old kernels
         # inside.
-        texts = [
-            _text(self.function.__code__.co_filename),
-            str(sorted(self.rounding)),
-        ]
+        texts = [_text(self.function.__code__.co_filename), str(sorted(self.rounding))]
         for helper in self._helpers().values():
             texts += helper._sources()
         return tuple(dict.fromkeys(texts))

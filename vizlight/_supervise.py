@@ -83,12 +83,7 @@ def has_parent() -> bool:
 
 @contextlib.contextmanager
 def stage(
-    doing: Doing,
-    path: str | os.PathLike[str],
-    /,
-    *,
-    temporary: str = "",
-    seconds: float = 0.0,
+    doing: Doing, path: str | os.PathLike[str], /, *, temporary: str = "", seconds: float = 0.0
 ) -> Iterator[None]:
     """Report the work of the process while this context is entered; without a parent do nothing.
 

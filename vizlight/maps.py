@@ -79,16 +79,9 @@ _INDIGO_TO_YELLOW = ["#4a45a6", "#7d40a8", "#bb4380", "#e3624d", "#f4993c", "#f9
 #: Pale over green and yellow to red and violet, as rain on radars is printed, but lighter or darker
 #: from step to step: light rain to hail.
 _RAIN = [
-    "#dfe6ee",
-    "#9fc3de",
-    "#5b9fb5",
-    "#3f9a5f",
-    "#a9c83f",
-    "#f3d23c",
-    "#ef8d2f",
-    "#d4402f",
+    "#dfe6ee", "#9fc3de", "#5b9fb5", "#3f9a5f", "#a9c83f", "#f3d23c", "#ef8d2f", "#d4402f",
     "#8e2a86",
-]
+]  # fmt: skip
 _ALL_AROUND = ["#3b6fb6", "#2fa5a0", "#6db33f", "#e0b030", "#e0603f", "#a34fa3", "#3b6fb6"]
 _surface = LinearSegmentedColormap.from_list("vizlight.surface", _VIOLET_TO_YELLOW)
 _heat = LinearSegmentedColormap.from_list("vizlight.heat", _INDIGO_TO_YELLOW)
@@ -267,10 +260,7 @@ def bands(
 
 
 def kinds(
-    values: Sequence[float] | Mapping[float, str],
-    /,
-    *,
-    colors: Mapping[float, str] | None = None,
+    values: Sequence[float] | Mapping[float, str], /, *, colors: Mapping[float, str] | None = None
 ) -> pv.LookupTable:
     """Return a lookup table that gives each of some whole numbers a colour of its own.
 

@@ -80,8 +80,7 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
         raise wrong(name, "a folder that exists", f"'{path.parent}'", "make it first")
     _refuse_others(name, path)
     if not os.access(path.parent, os.W_OK):
-        got = f"'{path.parent}', which is read-only"
-        raise wrong(name, "a writable folder", got)
+        raise wrong(name, "a writable folder", f"'{path.parent}', which is read-only")
     return path
 
 
@@ -97,8 +96,7 @@ def check_format(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
         check_dataset(block)
     path, kind = checked_path("output", path), type(mesh).__name__
     if kind not in FORMATS:
-        expected = f"one of {', '.join(FORMATS)}"
-        raise wrong("mesh", expected, kind, "cast it to one of them")
+        raise wrong("mesh", f"one of {', '.join(FORMATS)}", kind, "cast it to one of them")
     formats = FORMATS[kind]
     if path.suffix.lower() not in formats:
         expected = f"a name that ends in {', '.join(formats)} for {kind}"

@@ -1,5 +1,7 @@
 """Strokes whose ends differ tell which way they run, others do not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -174,13 +176,13 @@ def test_segments_are_in_pixels_and_each_line_is_far_from_the_others(block, monk
     assert found.number[5, 5] == -1
     assert segments_of([ground], pixels, camera) is None
     # Two meshes of lines, of which one segment is seen: the others are still known along the lines.
-    some = pixels.take(pixels.cell == 1)
-    few = segments_of([ground, part, part], some._replace(part=some.part + 1), camera)
+    some = pixels[pixels.cell == 1]
+    few = segments_of([ground, part, part], replace(some, part=some.part + 1), camera)
     np.testing.assert_allclose(few.start, [[60, 40]], atol=1e-4)
     np.testing.assert_allclose(few.along, [100 + 2 * JUMP], atol=1e-3)
     assert (few.line, few.number.max(), few.number[40, 75]) == ([2], 0, 0)
     second = (pixels.part == 1) & (pixels.cell == 1)
-    both = pixels._replace(part=np.where(second, 2, pixels.part))
+    both = replace(pixels, part=np.where(second, 2, pixels.part))
     numbers = segments_of([ground, part, part], both, camera).number
     assert (numbers[40, 45], numbers[40, 75], numbers[30, 60]) == (0, 2, 1)
     ways = few.ways_at(np.array([-5, 19, 21, 50 + JUMP, 90 + 2 * JUMP, np.inf, np.nan]))

@@ -247,7 +247,7 @@ def test_the_mean_normal_is_that_of_all_candidates_however_unlikely_each_is():
     sample = places(presets.shape(), None, normals)
     seen = Colors(lab(readers.shown(sample.light(None, normals))) + 60, np.full((3, 3), 1.5))
     disc, along = readers.candidates(*readers.ALONE, 0.3)
-    table = lab(readers.shown(readers._ball(sample.take(np.zeros(900, int)), disc, along)))
+    table = lab(readers.shown(readers._ball(sample[np.zeros(900, int)], disc, along)))
     off = ((seen.lab[:, np.newaxis] - table) / 1.5) ** 2
     mean = softmax(-off.sum(axis=2) / 2, axis=1) @ disc
     cosine = (mean * normals).sum(axis=1) / np.linalg.norm(mean, axis=1)

@@ -350,8 +350,7 @@ def _light_pieces(
             remedy = f"make it of the index by 'vizlight light {indices[0]} -o {path}'"
             raise value_error("output", expected, f"'{path}'", remedy)
     if len(indices) > 1:
-        expected = "one index of pieces"
-        raise value_error("output", expected, ", ".join(map(str, indices)))
+        raise value_error("output", "one index of pieces", ", ".join(map(str, indices)))
     if indices[0].suffix == ".pvtp":
         light_options = {"feature_angle": "auto"} | light_options
     what = scenes.given_options(contour=target.contour, level=target.level, slab=pieces.slab)

@@ -78,10 +78,7 @@ def _fail(error: object) -> int:
 
 @app.command
 def demo(
-    *,
-    out: Path = Path("vizlight-demo"),
-    size: str = "1200x500",
-    backend: Backend | None = None,
+    *, out: Path = Path("vizlight-demo"), size: str = "1200x500", backend: Backend | None = None
 ) -> int:
     """Light measured winds so that hue is their direction.
 

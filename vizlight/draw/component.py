@@ -521,12 +521,9 @@ class Component:
     def moving(self) -> list[pv.PolyData]:
         """Return the lines with moving strokes: those of ``streamlines(travel=)`` with widths."""
         lives = [self._live_of(actor) for actor in items(self._open_plotter().renderer.GetActors())]
-        strokes = [
-            live.source.mesh for live in lives if live is not None and live.stroke.width == WIDTH
-        ]
-        return [
-            mesh for mesh in strokes if isinstance(mesh, pv.PolyData) and PHASE in mesh.point_data
-        ]
+        meshes = [live.source.mesh for live in lives if live and live.stroke.width == WIDTH]
+        lines = [mesh for mesh in meshes if isinstance(mesh, pv.PolyData)]
+        return [mesh for mesh in lines if PHASE in mesh.point_data]
 
     def explain(self, actor: vtkActor, /) -> str:
         """Return where the light of an actor is computed and why, and which terms.

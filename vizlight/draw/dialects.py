@@ -79,9 +79,7 @@ class Dialect:
         parts = [
             Replacement("Vertex", "//VTK::Camera::Dec", matrices),
             Replacement(
-                "Vertex",
-                "//VTK::Normal::Dec",
-                f"uniform mat3 normalMatrix;\n{attributes}{out}",
+                "Vertex", "//VTK::Normal::Dec", f"uniform mat3 normalMatrix;\n{attributes}{out}"
             ),
             Replacement(
                 "Vertex",

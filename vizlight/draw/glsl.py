@@ -358,10 +358,7 @@ ALONG = Varying("vizD", "vec4", "{along}")
 COURSE = Varying("vizD", "vec4", "{course}")
 #: What lines with halos have: the place across a line and past either end, in half widths, the
 #: changes of depth of the line and of the border of its halo, and the widths at both ends.
-HALO = (
-    Varying("vizLine", "vec3", "vec3(0.0)"),
-    Varying("vizDeep", "vec4", "vec4(0.0)"),
-)
+HALO = (Varying("vizLine", "vec3", "vec3(0.0)"), Varying("vizDeep", "vec4", "vec4(0.0)"))
 #: Length of the direction of a line, which is longer by 1 at an end, and by half of a width.
 END = Varying("vizEnd", "float", "{length}")
 #: Normal of the cylinder at a fragment, from the tangent and the place across the line.

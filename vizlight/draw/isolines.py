@@ -411,10 +411,7 @@ def _length(piece: Array) -> float:
 
 
 def _place(
-    piece: Array,
-    room: float,
-    taken: list[tuple[Array, float]],
-    near: Callable[[Array], Bools],
+    piece: Array, room: float, taken: list[tuple[Array, float]], near: Callable[[Array], Bools]
 ) -> tuple[float, float, Array, Array] | None:
     """Return where a number stands: ends along the line, its middle and its direction."""
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(piece, axis=0), axis=1))])

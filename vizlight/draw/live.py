@@ -42,9 +42,7 @@ LUMINANCE, COLORS, VALUES = "vizlight luminance", "vizlight colors", "vizlight v
 TANGENTS, NORMALS = "vizlight tangents", "vizlight normals"
 #: Fragment shader that draws the colours of the points.
 AS_IT_IS = dialects.Replacement(
-    "Fragment",
-    "//VTK::Light::Impl",
-    "  gl_FragData[0] = vec4(vertexColorVSOutput.rgb, opacity);\n",
+    "Fragment", "//VTK::Light::Impl", "  gl_FragData[0] = vec4(vertexColorVSOutput.rgb, opacity);\n"
 )
 
 

@@ -480,13 +480,7 @@ def _along(low: float, high: float, size: float, way: Array) -> list[tuple[float
 
 
 def ticks(
-    low: float,
-    high: float,
-    size: float,
-    signs: str,
-    most: int = MOST,
-    *,
-    is_up: bool | None = None,
+    low: float, high: float, size: float, signs: str, most: int = MOST, *, is_up: bool | None = None
 ) -> list[tuple[float, str]]:
     """Return round places along a side of a map, and their words.
 

@@ -471,16 +471,14 @@ def _need(package: str) -> None:
 
 
 def _write_sequence(path: Path, pictures: Iterable[Picture]) -> list[Path]:
-    files = []
-    for i, picture in enumerate(pictures):
-        name = path.with_name(f"{path.stem}_{i:04d}.png")
-        files.append(replace_file(name, Image.fromarray(picture).save))
-    for i in itertools.count(len(files)):
-        # Frames left over from an earlier, longer sequence would play at the end of this one.
-        name = path.with_name(f"{path.stem}_{i:04d}.png")
-        if not name.is_file():
-            return files
-        name.unlink()
+    paths = (path.with_name(f"{path.stem}_{i:04d}.png") for i in itertools.count())
+    files = [
+        replace_file(file, Image.fromarray(picture).save)
+        for picture, file in zip(pictures, paths, strict=False)
+    ]
+    # Frames left over from an earlier, longer sequence would play at the end of this one.
+    for file in itertools.takewhile(Path.is_file, paths):
+        file.unlink()
     return files
 
 

@@ -364,9 +364,7 @@ def save_png(
 
 
 def pictures(
-    sequence: Iterable[Mesh | Panel | Sequence[Mesh | Panel]],
-    /,
-    **options: Unpack[PlotterKeywords],
+    sequence: Iterable[Mesh | Panel | Sequence[Mesh | Panel]], /, **options: Unpack[PlotterKeywords]
 ) -> Iterator[NDArray[np.uint8]]:
     """Yield one picture after the other, all drawn with the same options.
 

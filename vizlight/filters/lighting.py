@@ -97,11 +97,7 @@ def _batches(
 
 
 def light(
-    parts: Sequence[tuple[ShadingInputs, ShadingOptions]],
-    scene: Scene,
-    /,
-    *,
-    progress_bar: bool,
+    parts: Sequence[tuple[ShadingInputs, ShadingOptions]], scene: Scene, /, *, progress_bar: bool
 ) -> tuple[list[engine.Shading], Scene]:
     """Light all inputs, each by its options.
 

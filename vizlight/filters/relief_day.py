@@ -110,10 +110,7 @@ def relief_day(
     # part.
     scene = Scene(lights=[Light(direction=way) for way in up], material=Material(specular=0.0))
     shadowed = relief_shadow(
-        mesh,
-        scene,
-        progress_bar=progress_bar,
-        **shadow_options.changed() | {"components": True},
+        mesh, scene, progress_bar=progress_bar, **shadow_options.changed() | {"components": True}
     )
     name = shadow_options.name
     mean = f"{name}_mean"

@@ -144,9 +144,7 @@ def is_lit(mesh: pv.DataSet | pv.MultiBlock, name: str = DEFAULT_NAME) -> bool:
 
 
 def from_record(
-    mesh: pv.DataSet | pv.MultiBlock,
-    scene: Scene | None = None,
-    name: str = DEFAULT_NAME,
+    mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None = None, name: str = DEFAULT_NAME
 ) -> tuple[list[Source], Scene]:
     """Return the sources that a filter lit on the meshes it returned, and the scene.
 

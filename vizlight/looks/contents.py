@@ -18,7 +18,7 @@ from vizlight.vtk.arrays import are_colors
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from vizlight._types import AnyArray, Array, Foreign, Raw
 
@@ -267,37 +267,41 @@ class Contents:
     def constants(self) -> dict[str, float | None]:
         """Arrays with one value by their names, and None for those without a finite one."""
         single: dict[str, float | None] = {}
-        for data in (self.mesh.point_data, self.mesh.cell_data):
-            for name, rows in data.items():
-                values = np.asarray(rows)
-                is_one_number = values.ndim == 1 and values.dtype.kind in "fiu" and len(values)
-                if not is_one_number or _are_numbers(_words(name)):
-                    continue
-                finite = values[np.isfinite(values)]
-                if not len(finite):
-                    single[name] = None
-                elif finite.min() == finite.max():
-                    single[name] = float(finite[0])
+        for name, finite in self._numbers:
+            if not len(finite):
+                single[name] = None
+            elif finite.min() == finite.max():
+                single[name] = float(finite[0])
         return single
+
+    @property
+    def _numbers(self) -> Iterator[tuple[str, Raw]]:
+        """Names and finite values of arrays of one number a point or a cell, but for counts."""
+        for name, rows in self._every:
+            values = np.asarray(rows)
+            is_one_number = values.ndim == 1 and values.dtype.kind in "fiu" and len(values)
+            if is_one_number and not _are_numbers(_words(name)):
+                yield name, values[np.isfinite(values)]
+
+    @property
+    def _every(self) -> list[tuple[str, AnyArray]]:
+        """All arrays of points and of cells with their names."""
+        return [*self.mesh.point_data.items(), *self.mesh.cell_data.items()]
 
     def words_on_rounding(self) -> str:
         """Return which arrays vary by no more than the rounding of their numbers, empty if none."""
-        words = []
-        for data in (self.mesh.point_data, self.mesh.cell_data):
-            for name, rows in data.items():
-                values = np.asarray(rows)
-                if values.ndim == 1 and values.dtype.kind == "f" and not _are_numbers(_words(name)):
-                    finite = values[np.isfinite(values)]
-                    if len(finite) and finite.min() < finite.max() and _is_rounded(finite):
-                        words.append(f"{name} is {finite[0]:g} everywhere, but for rounding")
+        words = [
+            f"{name} is {finite[0]:g} everywhere, but for rounding"
+            for name, finite in self._numbers
+            if len(finite) and finite.min() < finite.max() and _is_rounded(finite)
+        ]
         noise = _noise(self.mesh, [array.name for array in self.arrays]).items()
         words += [f"{name}, up to {size:.1g}, is taken for rounding of 0" for name, size in noise]
         return ", ".join(words)
 
     def words_on_complex(self) -> str:
         """Return which arrays hold complex numbers, which have no place on a bar; empty if none."""
-        data = (*self.mesh.point_data.items(), *self.mesh.cell_data.items())
-        names = ", ".join(name for name, rows in data if np.iscomplexobj(rows))
+        names = ", ".join(name for name, rows in self._every if np.iscomplexobj(rows))
         return names and f"{names}: complex numbers are not shown; take numpy.abs or numpy.angle"
 
     def first(self, *roles: Role) -> Named | None:

@@ -35,10 +35,7 @@ def plane(name: str, value: object) -> tuple[Vector, Vector]:
     if not isinstance(value, str):
         expected = f"{PLANE}, or a normal and an origin"
         normal, origin = _parts(name, value, 2, expected)
-        return (
-            _check.vector(name, normal, direction=True, n=3),
-            _check.vector(name, origin, n=3),
-        )
+        return (_check.vector(name, normal, direction=True, n=3), _check.vector(name, origin, n=3))
     text, _, offset = value.rpartition(":")
     normal = AXES.get(text.lower()) or numbers(text)
     distance = numbers(offset, (1,))

@@ -450,12 +450,7 @@ def _of_points(points: Array, vectors: Array | None = None) -> Viewpoint:
 
 
 def _seen(
-    corners: Array,
-    places: Array,
-    normals: Array,
-    areas: Array,
-    way: Array,
-    values: Array | None,
+    corners: Array, places: Array, normals: Array, areas: Array, way: Array, values: Array | None
 ) -> float:
     """Return the area that an eye at infinity sees, by how much of a picture it fills.
 

@@ -240,14 +240,9 @@ class Look:
             return [[self._written(drawing.alone, path)]]
         if not drawing.parts or suffix in TOGETHER:
             return [[self._written(drawing.lit, path)]]
-        return [
-            [
-                self._written(
-                    Step("", "[]", drawing.lit, part), path.with_stem(f"{path.stem}-{part}")
-                )
-            ]
-            for part in drawing.parts
-        ]
+        paths = {part: path.with_stem(f"{path.stem}-{part}") for part in drawing.parts}
+        parts = {part: Step("", "[]", drawing.lit, part) for part in drawing.parts}
+        return [[self._written(mesh, paths[part])] for part, mesh in parts.items()]
 
     def _written(self, mesh: Step, path: Path) -> Step:
         if path.suffix.lower() in GLTF:
@@ -485,15 +480,13 @@ def decide(data: object, wishes: Wishes) -> Look:
     if joined is not None:
         wishes = replace(wishes, part={**wishes.part, "overlay": several[1:]})
         several = several[:1]
-    parts, steps = [], []
+    ready = []
     for item in several:
-        for step in read_steps(item, wishes) if joined is None else [joined]:
-            parts.append(item)
-            steps.append(step)
-    ready = [prepared(part, step, wishes) for part, step in zip(parts, steps, strict=True)]
-    if wishes.question == "flow":
-        for part, (step, _, _) in zip(parts, ready, strict=True):
-            look_options.check_flow(part, step.run(), wishes.light.get("tangents"))
+        for read in read_steps(item, wishes) if joined is None else [joined]:
+            ready.append(prepared(item, read, wishes))
+            if wishes.question == "flow":
+                mesh = ready[-1][0].run()
+                look_options.check_flow(item, mesh, wishes.light.get("tangents"))
     if len(ready) == 1:
         ((step, contents, notes),) = ready
         step, contents, wishes, words = look_options.in_space(step, contents, wishes)

@@ -21,7 +21,7 @@ from vizlight.filters.streamlines import vectors_by_default
 from vizlight.looks import cuts, map_parts, views
 from vizlight.looks.contents import Contents
 from vizlight.looks.steps import DISPLACED, Step
-from vizlight.looks.wishes import STYLES, Wishes, direction, scene_step
+from vizlight.looks.wishes import STYLES, Wishes, direction
 from vizlight.mesh import charts, georeference, globes, height_grids, meaning, nspace, stresses
 from vizlight.reading import series
 from vizlight.scene import Scene
@@ -47,6 +47,10 @@ PICTURE = (
     "background", "line_width", "cmap", "clim", "scalars", "key", "map_parts", "backend",
     "progress", "title", "frames", "fps",
 )  # fmt: skip
+#: Fields of :class:`.Wishes` by the names of the options in them.
+GROUP_OF = (
+    dict.fromkeys(PART, "part") | dict.fromkeys(EYE, "eye") | dict.fromkeys(PICTURE, "picture")
+)
 
 
 #: Shares of the size of a solid within which the longest displacement is seen, and the share to
@@ -138,33 +142,17 @@ def sorted_out(
     groups: dict[str, Keywords] = {"part": {}, "light": {}, "eye": {}, "picture": {}}
     scene = options.pop("scene", None)
     for name, value in checked(options).items():
-        group = next(
-            (
-                key
-                for key, names in (("part", PART), ("eye", EYE), ("picture", PICTURE))
-                if name in names
-            ),
-            "light",
-        )
+        group = GROUP_OF.get(name, "light")
         if group == "light" and name not in light_names and question in ("auto", *PRESETS):
-            allowed = [*PART, *EYE, *PICTURE, "scene", *sorted(light_names)]
+            allowed = [*GROUP_OF, "scene", *sorted(light_names)]
             raise TypeError(unknown_option("look", name, allowed))
         groups[group][name] = value
-    return Wishes(
-        question,
-        array,
-        view,
-        (columns, rows),
-        style,
-        groups["part"],
-        with_joined_names(groups["light"]),
-        groups["eye"],
-        groups["picture"],
-        scene_maker(scene),
-    )
+    part, light, eye, picture = groups.values()
+    light, maker, pixels = with_joined_names(light), scene_maker(scene), (columns, rows)
+    return Wishes(question, array, view, pixels, style, part, light, eye, picture, maker)
 
 
-def scene_maker(scene: object) -> SceneMaker | None:
+def scene_maker(scene: Foreign) -> SceneMaker | None:
     """Return the function that makes the step of a scene that was given: a value or a preset.
 
     Raises
@@ -178,7 +166,7 @@ def scene_maker(scene: object) -> SceneMaker | None:
         required_scene(scene)
         return lambda _question, view, _camera, _n: Step("scene", f"vizlight.presets.{scene}", view)
     _check.instance("scene", scene, Scene)
-    return lambda *_: scene_step(scene)  # type: ignore[arg-type]
+    return lambda *_: Step("scene", "vizlight.Scene.from_dict", scene.to_dict())
 
 
 def cut(mesh: Step, contents: Contents, wishes: Wishes) -> tuple[Step, Contents]:

@@ -125,11 +125,9 @@ def joined(drawings: Sequence[Drawing]) -> Drawing:
     # Words around views are those of all meshes.
     words_around = [layer for layer in every if layer.mesh.path == "render.captions"]
     layers = [layer for layer in every if layer not in words_around]
-    first = drawings[0]
     words = dict.fromkeys(drawing.words for drawing in drawings)
-    background = next((each.background for each in drawings if each.background), None)
     return replace(
-        first,
+        drawings[0],
         layers=[*layers, *words_around[:1]],
         lit=lit,
         words=f"{len(drawings)} meshes: {', '.join(words)}",
@@ -137,5 +135,5 @@ def joined(drawings: Sequence[Drawing]) -> Drawing:
         notes=list(dict.fromkeys(note for drawing in drawings for note in drawing.notes)),
         kind=lit,
         parts=(),
-        background=background,
+        background=next((each.background for each in drawings if each.background), None),
     )

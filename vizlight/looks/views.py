@@ -32,7 +32,8 @@ ENDS = ("anterior", "posterior")
 
 def arranged(case: Case, drawing: Drawing) -> Drawing:
     """Return a drawing with each of its layers in each view of a case, or the drawing as it is."""
-    every, views = case.wishes.views, views_of(drawing.camera)
+    every = case.wishes.views
+    views = next((step for step in in_order([drawing.camera]) if step.path == BESIDE), None)
     if every is None or views is None:
         return drawing
     mesh, *rest = views.arguments
@@ -139,11 +140,6 @@ def of_pair(meshes: Sequence[pv.DataSet], wishes: Wishes) -> list[Views]:
     sides = [brains.hemisphere(mesh) for mesh in meshes]
     is_free = wishes.view is None and wishes.frame is None
     return of_hemispheres(sides) if is_free and sorted(sides) == ["left", "right"] else []
-
-
-def views_of(camera: Step) -> Step | None:
-    """Return the step that makes the views that a camera is set on, None for a single view."""
-    return next((step for step in in_order([camera]) if step.path == BESIDE), None)
 
 
 def of_surface(surface: Step, shown: str) -> Views | None:

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from vizlight._types import Foreign, Keywords, Vector
     from vizlight.looks.contents import Named
     from vizlight.looks.framing import Viewpoint, Views
-    from vizlight.scene import Scene
 
     #: Function that returns the step of a scene, of a question, the steps of a view and a camera,
     #: and the dimension of space.
@@ -84,44 +83,37 @@ def plain_scene(question: str, view: Step, camera: Step, _n: int = 3) -> Step:
     if question == "value":
         # Colours of data are read best where a lamp at the eye dims steep places alone, and little.
         lights = [Step("", "vizlight.Light.headlight")]
-        material = Step("", "vizlight.Material", ambient=0.5, diffuse=0.5)
-        return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
-    if question in PRESETS:
+        material: Keywords = {"ambient": 0.5, "diffuse": 0.5}
+    elif question in PRESETS:
         return Step("scene", f"vizlight.presets.{question}", view)
-    if question == "none":
-        material = Step("", "vizlight.Material", ambient=1.0, diffuse=0.0)
-        return Step("scene", "vizlight.Scene", lights=[], material=material, view=view)
-    if question == "relief":
+    elif question == "none":
+        lights, material = [], {"ambient": 1.0, "diffuse": 0.0}
+    elif question == "relief":
         toward = _of_angles(*SUN)
         lights = [Step("", "vizlight.Light", direction=toward)]
         # The light of level ground becomes 1: neighbouring maps are alike, whatever the slopes are.
         plain = Material()
         exposure = round(1 / (plain.ambient + plain.diffuse * toward[2]), 3)
         return Step("scene", "vizlight.Scene", lights=lights, view=view, exposure=exposure)
-    if question == "lamp":
+    elif question == "lamp":
         lights = [Step("", "vizlight.Light", direction=(-0.6, 0.6, 1.0), follows_view=True)]
-        glossy = {"ambient": 0.55, "diffuse": 0.55, "specular": 0.1, "shininess": 20.0}
-        material = Step("", "vizlight.Material", **glossy)
-        return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
-    if question == "room":
+        material = {"ambient": 0.55, "diffuse": 0.55, "specular": 0.1, "shininess": 20.0}
+    elif question == "room":
         lights = [Step("", "vizlight.Light", **lamp, follows_view=True) for lamp in ROOM]
-        material = Step("", "vizlight.Material", ambient=AROUND, diffuse=1.0)
-        return Step("scene", "vizlight.Scene", lights=lights, material=material, view=view)
-    if question == "shadow":
+        material = {"ambient": AROUND, "diffuse": 1.0}
+    elif question == "shadow":
         # A shadow is cast by one lamp, where the default of a scene has two.
         lights = [Step("", "vizlight.Light", direction=Step("", "render.over_shoulder", camera))]
         return Step("scene", "vizlight.Scene", lights=lights, view=view)
-    return Step("scene", "vizlight.Scene", view=view)
+    else:
+        return Step("scene", "vizlight.Scene", view=view)
+    shown = Step("", "vizlight.Material", **material)
+    return Step("scene", "vizlight.Scene", lights=lights, material=shown, view=view)
 
 
 def even_light(camera: Step) -> Step:
     """Return the step of a scene of ambient light alone, in which colours are as they are."""
     return plain_scene("none", Step("", "vizlight.View.from_camera", camera), camera)
-
-
-def scene_step(scene: Scene) -> Step:
-    """Return the step that makes a scene which was passed as a value."""
-    return Step("scene", "vizlight.Scene.from_dict", scene.to_dict())
 
 
 @dataclass(frozen=True)

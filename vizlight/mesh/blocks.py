@@ -316,6 +316,14 @@ def moved(mesh: DataSetT, offset: Array, scale: float | Array = 1.0) -> DataSetT
     return cast("DataSetT", out)
 
 
+def structured(points: Array, dimensions: Sequence[int]) -> pv.StructuredGrid:
+    """Return a grid with points in the order of VTK, along its first axis first."""
+    grid = pv.StructuredGrid()
+    grid.dimensions = dimensions
+    grid.points = points
+    return grid
+
+
 def polydata(points: Array, cells: Indices) -> pv.PolyData:
     """Return a mesh of cells of 1 to 4 points each; a row of ``cells`` has the points of a cell."""
     mesh = pv.PolyData()

@@ -95,8 +95,7 @@ def chart(mesh: pv.DataSet, /, projection: str | None = None) -> pv.DataSet:
         mesh = globes.centred(mesh, float(words.get("lon_0", 0.0)))
     flat = _moved(mesh, plane, is_plane=words.get("proj") == "eqc")
     if not np.isfinite(flat.bounds).all():
-        expected = f"places on the map of {text!r}"
-        raise _check.value_error("mesh", expected, "some beyond it")
+        raise _check.value_error("mesh", f"places on the map of {text!r}", "some beyond it")
     flat.field_data[georeference.UNIT] = ["metre"]
     flat.field_data[PROJECTION] = [text]
     return flat

@@ -287,9 +287,8 @@ def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.Structured
     if isinstance(mesh, pv.RectilinearGrid):
         layer = pv.RectilinearGrid(mesh.x, mesh.y, mesh.z[at : at + 1])
     else:
-        layer = pv.StructuredGrid()
-        layer.points = np.array(mesh.points[at * nx * ny : (at + 1) * nx * ny])
-        layer.dimensions = (nx, ny, 1)
+        rows = np.array(mesh.points[at * nx * ny : (at + 1) * nx * ny])
+        layer = blocks.structured(rows, (nx, ny, 1))
     cells = max(nx - 1, 1) * max(ny - 1, 1)
     places = (
         (mesh.point_data, layer.point_data, at, nx * ny),

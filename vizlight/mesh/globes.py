@@ -10,7 +10,7 @@ import scipy
 
 from vizlight import _check
 from vizlight._types import Array, Indices
-from vizlight.mesh import georeference, meaning, polylines, projections, records
+from vizlight.mesh import blocks, georeference, meaning, polylines, projections, records
 from vizlight.vtk.cells import connectivity, dimensions
 
 #: Field array that says that a mesh is the earth as a ball around 0, with its radius.
@@ -184,9 +184,7 @@ def _of_columns(
 ) -> pv.StructuredGrid:
     """Return a grid of columns of another, with their data, at points of shape (rows, M, 3)."""
     rows = len(points)
-    grid = pv.StructuredGrid()
-    grid.dimensions = (len(columns), rows, 1)
-    grid.points = points.reshape(-1, 3)
+    grid = blocks.structured(points.reshape(-1, 3), (len(columns), rows, 1))
     layers = [(mesh.point_data, grid.point_data, rows, columns)]
     if cells is not None:
         layers.append((mesh.cell_data, grid.cell_data, rows - 1, cells))

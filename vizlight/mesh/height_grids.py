@@ -359,10 +359,7 @@ def raised(grid: Grid) -> Grid:
     grid = georeference.in_metres(grid)
     points: Array = np.array(grid.points, dtype=np.float64)
     points[:, 2] = grid.point_data[name]
-    out = pv.StructuredGrid()
-    out.dimensions = grid.dimensions
-    out.points = points
-    return out
+    return blocks.structured(points, grid.dimensions)
 
 
 def heights_name(grid: pv.DataSet) -> str | None:

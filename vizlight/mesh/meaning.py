@@ -17,7 +17,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._types import Foreign, Raw
 from vizlight.mesh import dates, records
-from vizlight.mesh.blocks import DataSetT
+from vizlight.mesh.blocks import DataSetT, MeshT
 from vizlight.vtk.arrays import stacked
 
 #: Most distinct values of an array of kinds, such as materials or labels.
@@ -181,8 +181,8 @@ def flags(mesh: pv.DataSet, name: str, key: str = "flags") -> dict[float, str]:
     return {float(number): text.replace("_", " ") for number, _, text in words}
 
 
-def attach(mesh: pv.DataSet, meaning: Meaning) -> None:
-    """Keep the meaning of a grid with its mesh.
+def attach(mesh: MeshT, meaning: Meaning) -> MeshT:
+    """Keep the meaning of a grid with its mesh, and return the mesh.
 
     Parameters
     ----------
@@ -191,6 +191,7 @@ def attach(mesh: pv.DataSet, meaning: Meaning) -> None:
     meaning : Meaning
     """
     mesh.field_data[MEANING] = [json.dumps(asdict(meaning))]
+    return mesh
 
 
 def of(mesh: pv.DataSet) -> Meaning:

@@ -92,8 +92,7 @@ def side_by_side(volume: pv.DataSet, name: str, /) -> pv.ImageData:
     grid.point_data[name] = sheet.ravel()
     said = meaning.of(volume)
     said.notes = []
-    meaning.attach(grid, said)
-    return grid
+    return meaning.attach(grid, said)
 
 
 def _steps(mesh: pv.DataSet) -> Array:

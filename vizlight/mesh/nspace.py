@@ -133,8 +133,7 @@ class Turning:
             if array.shape[1] % n or not 0 < array.shape[1] // n <= most:
                 expected = f"a point array of {n} k components, as positions have {n}"
                 got = f"{name!r} with {array.shape[1]} components"
-                remedy = "name another array"
-                raise _check.value_error(argument, expected, got, remedy)
+                raise _check.value_error(argument, expected, got, "name another array")
             arrays[name] = array
         # Positions have no array of images: these are the points of the result.
         _refuse_overwriting(mesh, [PROJECTED + name for name in list(arrays)[1:]])
@@ -637,5 +636,4 @@ def with_last_coordinate(mesh: pv.DataSet, name: str, /) -> pv.DataSet:
     records.attach_rows(out, _check.text("name", name), places[:, -1].copy())
     said = meaning.of(out)
     said.add_array(name, {"long_name": f"{name}, the last of {places.shape[1]} coordinates"})
-    meaning.attach(out, said)
-    return out
+    return meaning.attach(out, said)

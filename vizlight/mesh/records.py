@@ -33,11 +33,7 @@ ANY = "any"
 
 
 def attach(
-    mesh: pv.DataSet,
-    name: str,
-    arrays: Mapping[str, Raw],
-    record: Record,
-    common: str = "",
+    mesh: pv.DataSet, name: str, arrays: Mapping[str, Raw], record: Record, common: str = ""
 ) -> None:
     """Attach point arrays in place of earlier ones of a name, and activate the one of that name."""
     # Those that the new result does not have go, too: old colours beside new light would mislead.
@@ -51,11 +47,7 @@ def attach(
 
 
 def write(
-    mesh: pv.DataSet,
-    name: str,
-    record: Record,
-    arrays: Iterable[str] = (),
-    common: str = "",
+    mesh: pv.DataSet, name: str, record: Record, arrays: Iterable[str] = (), common: str = ""
 ) -> None:
     """Attach the record of an array, with digests of the point arrays that it describes.
 

@@ -53,8 +53,7 @@ def stretched(mesh: DataSetT, factor: float) -> DataSetT:
         up = up._replace(factor=-1.0, is_log=True)
     out = blocks.moved(mesh, np.zeros(3), np.array([1.0, factor, 1.0]))
     said.scales = [flat, up._replace(factor=factor * up.factor)]
-    meaning.attach(out, said)
-    return out
+    return meaning.attach(out, said)
 
 
 def _is_deep(mesh: pv.DataSet) -> bool:

@@ -162,11 +162,7 @@ def _field(mesh: pv.DataSet, elevation: str | None, factor: float) -> Heights | 
 
 
 def _of_field(
-    field: Heights,
-    error: float,
-    *,
-    openness: bool,
-    report: Callable[[int], None],
+    field: Heights, error: float, *, openness: bool, report: Callable[[int], None]
 ) -> Sky:
     """Return the sky of a height field."""
     nodes = field.x, field.y, field.z
@@ -310,9 +306,7 @@ def _missed(sky: Sky, shape: _Shape, hidden: sky_rays.Occluders) -> float:
 
 
 def in_medium(
-    mesh: pv.DataSet,
-    lines: tuple[media.Medium, float],
-    normals: Array | None = None,
+    mesh: pv.DataSet, lines: tuple[media.Medium, float], normals: Array | None = None
 ) -> Array:
     """Return the share of light from all sides at points of a surface, or of lines, among lines.
 

@@ -169,11 +169,7 @@ class CellTracer:
             seeds = self.random(2 * missing, how.seed + tried)
 
     def even(
-        self,
-        seeds: CellPlaces | None,
-        how: Tracing,
-        spacing: float,
-        report: Callable[[int], None],
+        self, seeds: CellPlaces | None, how: Tracing, spacing: float, report: Callable[[int], None]
     ) -> tuple[Curves, dict[str, float]]:
         """Return evenly spaced curves, and facts on their evenness; ``report`` as for traced.
 
@@ -186,11 +182,7 @@ class CellTracer:
         """
         total = even.place_count(self.flow, spacing)
         curves, closed = even.evenly_spaced(
-            self.flow,
-            spacing,
-            how,
-            seeds=seeds,
-            report=lambda done: report(100 * done // total),
+            self.flow, spacing, how, seeds=seeds, report=lambda done: report(100 * done // total)
         )
         gap, near = even.evenness(self.flow, spacing, curves)
         return curves, {"largest_gap": gap, "nearest": near, "closed": closed}

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 import pyvista as pv
 
 from vizlight._types import AnyArray, Array, Bools, Indices, Raw
+from vizlight.geometry.lines.simplices import Columns
 from vizlight.mesh import blocks, globes, meaning
 
 #: Distance of a node from a pole, in degrees, below which it has no longitude of its own.
@@ -74,25 +74,13 @@ class Faces:
 
 
 @dataclass(frozen=True)
-class _Ring:
+class _Ring(Columns):
     """Corners of one face: nodes between which they are, shares, longitudes and latitudes."""
 
     nodes: Indices
     shares: Array
     lon: Array
     lat: Array
-
-    def part(self, rows: Indices) -> _Ring:
-        """Return some of the corners."""
-        return _Ring(self.nodes[rows], self.shares[rows], self.lon[rows], self.lat[rows])
-
-    @classmethod
-    def joined(cls, rings: Sequence[_Ring]) -> _Ring:
-        """Return the corners of some faces, one after the other."""
-        columns = (
-            np.concatenate([getattr(ring, entry.name) for ring in rings]) for entry in fields(cls)
-        )
-        return cls(*columns)
 
 
 def plain(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
@@ -158,7 +146,7 @@ def unrolled(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
                 count += 1
     of_face = np.concatenate(numbers)
     order = np.argsort(of_face, kind="stable")
-    every = _Ring.joined(rings).part(order)
+    every = rings[0].joined(*rings[1:])[order]
     ends = np.concatenate([[0], np.cumsum(np.bincount(of_face, minlength=count))])
     map_faces = _joined(x, y, every, ends, np.concatenate(faces))
     return replace(map_faces, places=map_faces.places + np.array([middle, 0.0]))
@@ -268,7 +256,7 @@ def _cut(ring: _Ring, side: float) -> _Ring:
     parts = []
     for i, j in enumerate(following):
         if off[i] >= 0:
-            parts.append(ring.part(np.array([i])))
+            parts.append(ring[i : i + 1])
         if off[i] * off[j] < 0:
             # The same in both faces at an edge, in whichever order they have its nodes.
             a, b = sorted((i, int(j)), key=lambda k: (ring.nodes[k, 0], ring.lon[k]))
@@ -279,7 +267,7 @@ def _cut(ring: _Ring, side: float) -> _Ring:
                 # Both are the pole.
                 nodes, share = ring.nodes[a : a + 1], ring.shares[a]
             parts.append(_Ring(nodes, np.array([share]), np.array([180.0]), np.array([lat])))
-    return _Ring.joined(parts)
+    return parts[0].joined(*parts[1:])
 
 
 def of_grid(grid: pv.StructuredGrid, there: Bools) -> tuple[pv.PolyData | pv.UnstructuredGrid, int]:

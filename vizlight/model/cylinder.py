@@ -261,11 +261,7 @@ class _Invariants(_Line):
         by_p = -2 * self.p * by_aa - self.q * by_dot
         by_q = -2 * self.q * by_bb - self.p * by_dot
         by_m = by_m + by_dot
-        parts = (
-            by_p * line + by_m * eye,
-            by_q * line + by_m * light,
-            by_p * light + by_q * eye,
-        )
+        parts = (by_p * line + by_m * eye, by_q * line + by_m * light, by_p * light + by_q * eye)
         gradients, largest = [], np.finfo(light.dtype).max
         for part, way, size in zip(parts, (light, eye, line), self.sizes, strict=True):
             # The value does not depend on lengths: the part along the vector goes, and the rest is

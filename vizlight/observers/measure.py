@@ -12,6 +12,7 @@ from scipy.ndimage import distance_transform_edt
 from vizlight import _check
 from vizlight.draw.cameras import footprint
 from vizlight.filters.key import color_below
+from vizlight.geometry.lines.simplices import Columns
 from vizlight.observers import crossings, readers
 from vizlight.observers.eye import Eye, means
 from vizlight.observers.figures import (
@@ -94,7 +95,7 @@ MATCHED: dict[str, type[Figure]] = {
 
 
 @dataclass(frozen=True)
-class SeenPlaces:
+class SeenPlaces(Columns):
     """Places of one mesh in the picture.
 
     Attributes
@@ -130,15 +131,6 @@ class SeenPlaces:
     course: Array
     thing: Indices
     length: Array | None = None
-
-    def take(self, rows: Bools | Indices) -> SeenPlaces:
-        """Return some of the places."""
-        return dataclasses.replace(
-            self, here=self.here.take(rows), right=self.right.take(rows), up=self.up.take(rows),
-            apart=self.apart[rows], colors=self.colors.take(rows), unit=self.unit[rows],
-            grain=self.grain[rows], course=self.course[rows], thing=self.thing[rows],
-            length=None if self.length is None else self.length[rows],
-        )  # fmt: skip
 
     def structure(self, turn: Callable[[Sample], Array], times: int = 1) -> Array:
         """Return the length in pixels within which data turn by 90 degrees, NaN where flat.
@@ -268,14 +260,14 @@ class _Seen(NamedTuple):
     def places(self, part: SeenMesh, ids: Indices) -> SeenPlaces:
         """Return the places of some pixels, all of which show one mesh."""
         pixels, camera = self.pixels, self.camera
-        chosen = pixels.take(ids)
+        chosen = pixels[ids]
         share = self.eye.share(part.width) if part.kind == "point" else None
         colors = readers.colors_at(
             self.things, chosen.row, chosen.column, self.random, self.eye.noise, share
         )
         beside = [_beside(pixels, self.number, ids, step) for step in ((0, 1), (1, 0))]
-        places = sample(part, pixels.take(np.concatenate([ids, *beside])), camera)
-        here, right, up = (places.take(np.arange(len(ids)) + i * len(ids)) for i in range(3))
+        places = sample(part, pixels[np.concatenate([ids, *beside])], camera)
+        here, right, up = (places[np.arange(len(ids)) + i * len(ids)] for i in range(3))
         course = np.zeros(len(ids))
         if here.tangents is not None and here.has_one_tangent:
             way = courses(camera, pixels.size, here.points, here.tangents[:, 0])
@@ -455,7 +447,7 @@ class _PictureReader:
         """Return the places where a question of light has an answer, and note those without."""
         lit = [p for p in self.groups if p.part.lit or p.part.by_axes]
         some = [p for p in lit if has_it(p)]
-        kept = [p.take(p.here.valid) for p in some]
+        kept = [p[p.here.valid] for p in some]
         total, left = (sum(len(p.here) for p in each) for each in (some, kept))
         if left < total:
             text = "places have no direction of tangents or normals, left out"
@@ -609,7 +601,7 @@ class _PictureReader:
                 text = f"value: {left} of {len(values)} places have no value, left out"
                 self.notes.append(text)
             if has_value.any():
-                groups.append(p.take(has_value))
+                groups.append(p[has_value])
                 # Values beyond the ends have the colours of the ends.
                 places.append(_shares(p.part.table, values[has_value]))
         if not groups:
@@ -686,12 +678,12 @@ def _once(places: SeenPlaces) -> SeenPlaces:
     whole = places.part.kind == "point" or places.part.glyph is not None
     if not whole:
         return places
-    return places.take(np.unique(places.thing, return_index=True)[1])
+    return places[np.unique(places.thing, return_index=True)[1]]
 
 
 def _kept(groups: list[SeenPlaces], rule: Callable[[SeenPlaces], Bools]) -> list[SeenPlaces]:
     """Return the places that a rule keeps, of the meshes that have any."""
-    return [places for places in (p.take(rule(p)) for p in groups) if len(places.here)]
+    return [places for places in (p[rule(p)] for p in groups) if len(places.here)]
 
 
 def _angles(readings: list[Reading], common: Keywords) -> Keywords:

@@ -5,6 +5,7 @@ The visible cells are those of one offscreen drawing in which each cell has its 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from vizlight.draw.backends import choose_backend, window_class
 from vizlight.draw.cameras import footprint
 from vizlight.draw.live import in_view
 from vizlight.draw.strokes import lay_on_surfaces
+from vizlight.geometry.lines.simplices import Columns
 from vizlight.model.kernels import unit_rows
 from vizlight.vtk.arrays import MadePoints
 from vizlight.vtk.cells import as_numpy, as_vtk
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
-    from vizlight._types import Array, Bools, Indices, Slice
+    from vizlight._types import Array, Indices, Slice
     from vizlight.shading.display import Bytes
     from vizlight.shading.inputs import ArraySource
     from vizlight.vtk.drawn import DrawnCells, DrawnPoints
@@ -141,7 +143,8 @@ def with_own_points(source: ArraySource, corners: Indices) -> tuple[Array, Indic
     return np.asarray(source[low:high]), corners - low
 
 
-class Pixels(NamedTuple):
+@dataclass(frozen=True)
+class Pixels(Columns):
     """Pixels of a picture that show a cell.
 
     Attributes
@@ -169,11 +172,6 @@ class Pixels(NamedTuple):
         right = (2 * self.column + 1 - width) / height
         up = (height - 2 * self.row - 1) / height
         return np.stack([right, up], axis=1)
-
-    def take(self, rows: Indices | Bools) -> Pixels:
-        """Return some of the pixels."""
-        places = self.row[rows], self.column[rows]
-        return Pixels(*places, self.part[rows], self.cell[rows], self.size)
 
 
 def visible(

@@ -7,11 +7,13 @@ of the eye, and gives the likeliest answer. It knows no normal, no lamp and no f
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from vizlight.filters.key import color_below
+from vizlight.geometry.lines.simplices import Columns
 from vizlight.model.kernels import unit_rows
 from vizlight.observers.eye import (
     OPPONENT,
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
 
     import pyvista as pv
 
-    from vizlight._types import Array, Indices, Rows
+    from vizlight._types import Array, Indices
     from vizlight.observers.eye import SeenPicture
     from vizlight.observers.samples import Sample
     from vizlight.shading.display import Bytes
@@ -64,7 +66,8 @@ LAPSES = (0.02, 0.1, 0.3, 0.6, 1.0)
 SHARPNESS = (1.0, 0.4, 0.15, 0.05)
 
 
-class Colors(NamedTuple):
+@dataclass(frozen=True)
+class Colors(Columns):
     """Colours that a reader has of places.
 
     Attributes
@@ -77,10 +80,6 @@ class Colors(NamedTuple):
 
     lab: Array
     deviation: Array
-
-    def take(self, rows: Rows) -> Colors:
-        """Return the colours of some places."""
-        return Colors(self.lab[rows], self.deviation[rows])
 
     def lightness(self) -> Colors:
         """Return the colours for a reader who goes by lightness alone."""
@@ -267,8 +266,8 @@ def read_direction(sample: Sample, middle: Array, colors: Colors, start: float) 
     hues = lab(shown(key(sample, middle, np.radians(start + np.arange(ANGLES)))))[:, 1:]
     chroma = np.linalg.norm(hues, axis=1)
     hues = hues / np.maximum(chroma, 1e-12)[:, np.newaxis]
-    radius = np.clip(colors.lab[:, 1:] @ hues.T, 0.0, chroma)
     along = colors.lab[:, 1:] @ hues.T
+    radius = np.clip(along, 0.0, chroma)
     # |c - r h|^2 = |c|^2 - 2 r c.h + r^2, of which |c|^2 is alike for all.
     gain = (2 * radius * along - radius**2) / 2
     logarithms = gain / (colors.deviation[:, 1:] ** 2).mean(axis=1)[:, np.newaxis]
@@ -336,7 +335,7 @@ def _single(sample: Sample) -> Array:
 def _nearest(sample: Sample, middle: Array, count: int) -> Sample:
     """Return the place nearest to the middle, some times: lamps shine on it as on a key."""
     nearest = np.argmin(((sample.points - middle) ** 2).sum(axis=1))
-    return sample.take(np.full(count, nearest))
+    return sample[np.full(count, nearest)]
 
 
 def key(sample: Sample, middle: Array, angles: Array) -> Array:
@@ -429,7 +428,7 @@ def _along(sample: Sample, middle: Array, colors: Colors, tables: Array) -> Read
     of_courses = tables.reshape(-1, COURSES, SLOPES, 3)
     for step in np.unique(steps % COURSES):
         rows = steps % COURSES == step
-        logarithms[rows] = likelihood(colors.take(rows), of_courses[:, step])
+        logarithms[rows] = likelihood(colors[rows], of_courses[:, step])
     right = np.clip(np.floor(toward + 90), 0, SLOPES - 1).astype(np.intp)
     answer = _drawn(logarithms) - 90 + 0.5
     other = elsewhere(len(toward))

@@ -15,6 +15,7 @@ from vizlight import _check
 from vizlight.draw.cameras import VIEW_ANGLE, camera_on
 from vizlight.filters.lighting import part_of
 from vizlight.filters.streamlines import TANGENTS, speed_of
+from vizlight.geometry.lines.simplices import Columns
 from vizlight.mesh import subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import length_rows, unit_rows
@@ -42,7 +43,7 @@ from vizlight.vtk.normals import is_scan
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    from vizlight._types import Array, Bools, Given, Indices, Keywords, Raw, Rows
+    from vizlight._types import Array, Bools, Given, Indices, Keywords, Raw
     from vizlight.observers.pixels import Pixels
     from vizlight.scene.conversion import AnyView
     from vizlight.shading.inputs import ArraySource
@@ -56,7 +57,7 @@ WHOLE = 1 << 17
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sample:
+class Sample(Columns):
     """Some places of a picture on one mesh: where they are, and their data.
 
     Attributes
@@ -98,13 +99,6 @@ class Sample:
 
     def __len__(self) -> int:
         return len(self.points)
-
-    def take(self, rows: Rows) -> Sample:
-        """Return some of the places."""
-        rows_of_arrays: Keywords = {
-            n: array[rows] for n, array in vars(self).items() if isinstance(array, np.ndarray)
-        }
-        return dataclasses.replace(self, **rows_of_arrays)
 
     @property
     def has_one_tangent(self) -> bool:

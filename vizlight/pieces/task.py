@@ -204,8 +204,7 @@ def look(piece: Piece, job: Job, target: Path) -> sides.PartFacts | None:
             np.savez(_kept_beside(target), **normals._asdict())
 
     return _tried(
-        piece,
-        lambda: sides.look(mesh, _others(mesh), options.normals, job.scene.view, keep),
+        piece, lambda: sides.look(mesh, _others(mesh), options.normals, job.scene.view, keep)
     )
 
 

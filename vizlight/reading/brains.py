@@ -15,7 +15,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._types import AnyArray, Foreign
-from vizlight.mesh import meaning
+from vizlight.mesh import blocks, meaning
 from vizlight.mesh.georeference import UNIT
 from vizlight.reading import file_parts, series
 
@@ -74,8 +74,7 @@ def is_freesurfer(path: Path) -> bool:
     ----------
     path : pathlib.Path
     """
-    with path.open("rb") as file:
-        return file.read(3) in _FREESURFER
+    return file_parts.first_bytes(path, 3) in _FREESURFER
 
 
 def word_and_unit(name: str) -> tuple[str, str]:
@@ -129,8 +128,7 @@ def is_pair(path: Path) -> bool:
     header = path.with_suffix(".hdr")
     if path.suffix.lower() not in (".hdr", ".img") or not header.is_file():
         return False
-    with header.open("rb") as file:
-        size = file.read(4)
+    size = file_parts.first_bytes(header, 4)
     return _HEADER in (int.from_bytes(size, "little"), int.from_bytes(size, "big"))
 
 
@@ -333,10 +331,8 @@ def of_affine(affine: AnyArray, counts: Sequence[int]) -> pv.ImageData | pv.Stru
     ijk = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(
         -1, 3, order="F"
     )
-    grid = pv.StructuredGrid()
-    grid.dimensions = counts
-    grid.points = ijk @ affine[:3, :3].T + affine[:3, 3]
-    return grid
+    points = np.asarray(ijk @ affine[:3, :3].T + affine[:3, 3], np.float64)
+    return blocks.structured(points, counts)
 
 
 def overlay(path: Path, surface: pv.DataSet) -> tuple[dict[str, AnyArray], meaning.Meaning]:

@@ -18,7 +18,7 @@ import pyvista as pv
 
 from vizlight._types import Array, Bools, Foreign, Indices, Keywords, Raw
 from vizlight.geometry.relief import height_field
-from vizlight.mesh import dates, fills, georeference, globes, meaning, projections, unrolled
+from vizlight.mesh import blocks, dates, fills, georeference, globes, meaning, projections, unrolled
 from vizlight.mesh.meaning import Meaning
 from vizlight.reading import grib_groups, listed, radars, rasters, series, staggered, unstructured
 
@@ -574,8 +574,7 @@ class _Reader:
             self._turn(grid, _angle(*ordered), mapped=mapped)
         if isinstance(grid, pv.StructuredGrid):
             grid = self._with_places(grid, place)
-        meaning.attach(grid, self.said)
-        return grid
+        return meaning.attach(grid, self.said)
 
     def _middles(self) -> dict[str, str]:
         """Return the dimension of the middles of cells for those of their sides."""
@@ -731,8 +730,7 @@ class _Reader:
         self.said.notes += fills.say(self.source, words)
         if unit:
             mesh.field_data[georeference.UNIT] = [unit]
-        meaning.attach(mesh, self.said)
-        return mesh
+        return meaning.attach(mesh, self.said)
 
     def _of_lists(self, along: set[str]) -> Iterator[tuple[str, Foreign]]:
         """Yield the variables with one of some dimensions that are data."""
@@ -772,13 +770,8 @@ class _Reader:
     def _say_single_level(self, mesh: pv.DataSet) -> None:
         """Say the level of a file of one layer that names it beside its axes, as CF does."""
         said = meaning.of(mesh)
-        levels = [
-            one
-            for one in self.file.coords.values()
-            if one.ndim == 0
-            and one.dtype.kind in "iuf"
-            and one.attrs.get("standard_name") in _LEVELS
-        ]
+        singles = self._single_numbers(self.file.coords)
+        levels = [one for one in singles if one.attrs.get("standard_name") in _LEVELS]
         if said.level or said.section or len(levels) != 1 or len(said.axes) != 2:
             return
         said.level = self.said.level = _level(levels[0], 0)
@@ -860,15 +853,15 @@ class _Reader:
 
     def _moment(self) -> Foreign:
         """Return the only time of a file without an axis of time, None without one."""
-        moments = [
-            one
-            for one in self.file.variables.values()
-            if one.ndim == 0
-            and one.dtype.kind in "iuf"
-            and " since " in str(one.attrs.get("units"))
-        ]
+        singles = self._single_numbers(self.file.variables)
+        moments = [one for one in singles if " since " in str(one.attrs.get("units"))]
         # A forecast has the time of its start too.
         return moments[-1] if moments else None
+
+    @staticmethod
+    def _single_numbers(variables: Mapping[str, Foreign]) -> list[Foreign]:
+        """Return the variables of one number."""
+        return [one for one in variables.values() if one.ndim == 0 and one.dtype.kind in "iuf"]
 
     def _start(self, unit: str) -> str:
         """Return the date of the start of a forecast whose steps are in a unit without one."""
@@ -1485,19 +1478,8 @@ def _curvilinear(axes: list[_Axis], places: tuple[Array, Array]) -> tuple[pv.Str
     # The order of rows and columns of the file is kept: they follow no axis.
     for axis, count in zip(axes, reversed(lon.shape), strict=False):
         axis.order = np.arange(count)
-    shape = (len(heights), *lon.shape)
-    points = np.stack(
-        [
-            np.broadcast_to(lon, shape),
-            np.broadcast_to(lat, shape),
-            np.broadcast_to(heights[:, np.newaxis, np.newaxis], shape),
-        ],
-        axis=-1,
-    )
-    grid = pv.StructuredGrid()
-    grid.dimensions = (shape[2], shape[1], shape[0])
-    grid.points = points.reshape(-1, 3)
-    return grid, ~missing
+    points = np.stack(np.broadcast_arrays(lon, lat, heights[:, np.newaxis, np.newaxis]), axis=-1)
+    return blocks.structured(points.reshape(-1, 3), points.shape[2::-1]), ~missing
 
 
 def _on_earth(lon: Array, lat: Array) -> Bools:

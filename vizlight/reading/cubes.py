@@ -78,8 +78,7 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     said = meaning.Meaning(["x in angstroms", "y", "z"])
     if value_unit and not has_orbitals:
         said.add_array(title, {"units": value_unit})
-    meaning.attach(grid, said)
-    return grid
+    return meaning.attach(grid, said)
 
 
 #: Lines of comments of OpenDX, the lines of its grid, and that of its values.

@@ -8,7 +8,7 @@ import numpy as np
 import pyvista as pv
 
 from vizlight._types import Foreign
-from vizlight.mesh import meaning
+from vizlight.mesh import blocks, meaning
 from vizlight.reading import file_parts
 
 SUFFIXES = (".mrc", ".ccp4", ".map")
@@ -54,9 +54,6 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
         grid = pv.ImageData(dimensions=values.shape, spacing=np.diag(edges), origin=first)
     else:
         rows = np.indices(values.shape).reshape(3, -1, order="F")
-        grid = pv.StructuredGrid()
-        grid.points = (edges @ rows).T + first
-        grid.dimensions = values.shape
+        grid = blocks.structured((edges @ rows).T + first, values.shape)
     grid.point_data["density"] = values.ravel(order="F")
-    meaning.attach(grid, meaning.Meaning(arrays={"density": {"long_name": WORDS}}))
-    return grid
+    return meaning.attach(grid, meaning.Meaning(arrays={"density": {"long_name": WORDS}}))

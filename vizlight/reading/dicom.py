@@ -71,8 +71,7 @@ def read(path: Path) -> pv.DataSet:
         said.notes.append(f"the first of {int(frames)} frames, which may be tiles of one image")
     elif not header.keys().isdisjoint(_SIZES):
         image.field_data[UNIT] = ["millimetre"]
-    meaning.attach(image, said)
-    return image
+    return meaning.attach(image, said)
 
 
 def _elements(data: bytes) -> Iterator[tuple[tuple[int, int], str]]:

@@ -26,8 +26,7 @@ _HEAD = 4096
 
 def is_mesh(path: Path) -> bool:
     """Return whether a file is a MESH of Geomview; other formats share the suffix."""
-    with path.open("rb") as file:
-        return _MESH.match(file.read(_HEAD)) is not None
+    return _MESH.match(file_parts.first_bytes(path, _HEAD)) is not None
 
 
 def read_off(path: Path) -> pv.PolyData:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pyvista as pv
-import scipy
 
 from vizlight._types import Array
 from vizlight.mesh import meaning
@@ -65,7 +64,7 @@ def read(path: Path) -> pv.PolyData | None:
     table = dict(zip(columns, zip(*rows, strict=True), strict=True))
     if "id" in table:
         # Processes write their atoms in any order.
-        order = np.argsort(_numbers(table["id"]), kind="stable")
+        order = np.argsort(molecules.numbers_of(table["id"]), kind="stable")
         table = {name: tuple(np.array(words)[order].tolist()) for name, words in table.items()}
     box = names.get("BOX BOUNDS", "")
     return _mesh(table, _places(table, box, items.get(box, [])))
@@ -76,10 +75,10 @@ def _places(table: dict[str, tuple[str, ...]], head: str, box: list[str]) -> Arr
     axes = next((names for names in _PLACES if {*names} <= {*table}), None)
     if axes is None:
         raise ValueError(f"it has no columns of places, such as x y z, among {' '.join(table)}")
-    places = np.column_stack([_numbers(table[name]) for name in axes])
+    places = np.column_stack([molecules.numbers_of(table[name]) for name in axes])
     if axes in _PLACES[:2]:
         return places
-    bounds = np.array([_numbers(line.split()) for line in box[:3]])
+    bounds = np.array([molecules.numbers_of(line.split()) for line in box[:3]])
     if "abc" in head or bounds.shape not in ((3, 2), (3, 3)):
         raise ValueError("places in shares of a box need its bounds as three rows xlo xhi")
     xy, xz, yz = bounds[:, 2] if bounds.shape[1] > 2 else (0.0, 0.0, 0.0)
@@ -97,11 +96,10 @@ def _mesh(table: dict[str, tuple[str, ...]], places: Array) -> pv.PolyData:
         mesh = molecules.joined(table["element"], places)
     else:
         mesh = pv.PolyData(places)
-        types = _numbers(table.get("type", ("1",) * len(places))).astype(np.intp)
+        types = molecules.numbers_of(table.get("type", ("1",) * len(places))).astype(np.intp)
         mesh.point_data["atom_type"] = types
-        nearest = scipy.spatial.cKDTree(places).query(places, k=min(2, len(places)))[0]
-        apart = float(np.median(np.reshape(nearest, (len(places), -1))[:, -1])) or 1.0
-        mesh.point_data["radius"] = np.full(len(places), apart)
+        apart = molecules.apart(places) if len(places) > 1 else 0.0
+        mesh.point_data["radius"] = np.full(len(places), apart or 1.0)
         mesh.set_active_scalars("atom_type")
         said = meaning.Meaning()
         said.add_kinds("atom_type", [(i, f"type {i}", ()) for i in sorted({*types.tolist()})])
@@ -109,17 +107,9 @@ def _mesh(table: dict[str, tuple[str, ...]], places: Array) -> pv.PolyData:
         meaning.attach(mesh, said)
     for name, names in _VECTORS.items():
         if {*names} <= {*table}:
-            mesh.point_data[name] = np.column_stack([_numbers(table[each]) for each in names])
+            mesh.point_data[name] = molecules.numbers_of([table[each] for each in names]).T
     for column, name in _NUMBERS.items():
         if column in table:
-            numbers = _numbers(table[column])
+            numbers = molecules.numbers_of(table[column])
             mesh.point_data[name] = numbers.astype(np.intp) if column == "mol" else numbers
     return mesh
-
-
-def _numbers(words: tuple[str, ...] | list[str]) -> Array:
-    """Return the numbers in the words of a column."""
-    try:
-        return np.array(words, dtype=np.float64)
-    except ValueError:
-        raise ValueError("an atom has words where its numbers are") from None

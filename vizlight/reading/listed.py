@@ -76,9 +76,7 @@ def listed(file: Foreign, letter_of: Callable[[str, Mapping[str, Foreign]], str]
 
 
 def joined(
-    file: Foreign,
-    letter_of: Callable[[str, Mapping[str, Foreign]], str],
-    chosen: Collection[str],
+    file: Foreign, letter_of: Callable[[str, Mapping[str, Foreign]], str], chosen: Collection[str]
 ) -> Foreign:
     """Return a dataset with the cells on all faces of a cube in one list, with their corners.
 

@@ -8,9 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pyvista as pv
-import scipy
 
-from vizlight._types import Array, Indices
+from vizlight._types import Indices
 from vizlight.mesh import meaning
 from vizlight.reading import file_parts, molecules
 
@@ -60,11 +59,12 @@ def of_gro(path: Path) -> pv.PolyData:
     points = [i for i, letter in enumerate(atoms[0] if atoms else "") if letter == "."]
     wide = points[1] - points[0] if len(points) > 1 else 1
     starts = [_FIRST + i * wide for i in range(6 if len(points) > 5 else 3)]
-    rows = _numbers([[line[i : i + wide] for i in starts] for line in atoms])
+    rows = molecules.numbers_of([[line[i : i + wide] for i in starts] for line in atoms])
     names = [(line[5:10].strip(), line[10:15].strip()) for line in atoms]
     elements = [_element(*pair) for pair in names]
     mesh = molecules.joined(elements, _NANOMETRE * rows[:, :3])
-    mesh.point_data["residue"] = _numbers([[line[:5]] for line in atoms])[:, 0].astype(np.intp)
+    residues = molecules.numbers_of([line[:5] for line in atoms])
+    mesh.point_data["residue"] = residues.astype(np.intp)
     if rows.shape[1] > 3:
         mesh.point_data["velocity"] = rows[:, 3:]
         said = meaning.of(mesh)
@@ -78,17 +78,10 @@ def of_gro(path: Path) -> pv.PolyData:
     )
     if not mesh.n_lines:
         del mesh.point_data["atom_type"]
-        mesh.point_data["radius"] = np.full(count, _apart(np.asarray(mesh.points)))
+        apart = molecules.apart(np.asarray(mesh.points)) if count > 1 else _NANOMETRE
+        mesh.point_data["radius"] = np.full(count, apart)
         mesh.set_active_scalars(molecules.RESIDUE)
     return mesh
-
-
-def _apart(places: Array) -> float:
-    """Return the median distance of nearest neighbours, in angstroms."""
-    if len(places) < 2:
-        return _NANOMETRE
-    distances: Array = np.asarray(scipy.spatial.cKDTree(places).query(places, k=2)[0])
-    return float(np.median(distances[:, 1]))
 
 
 def _element(residue: str, name: str) -> str:
@@ -124,11 +117,10 @@ def of_mol2(path: Path) -> pv.PolyData:
     _check_counts(lines[2:3], atoms, bonds)
     elements = [" ".join(row[5:6]).partition(".")[0] for row in atoms]
     pairs = _pairs([row[0] for row in atoms], [row[1:3] for row in bonds])
-    mesh = molecules.joined(
-        elements, _numbers([row[2:5] for row in atoms]), pairs, name=" ".join(lines[1:2])
-    )
+    places = molecules.numbers_of([row[2:5] for row in atoms])
+    mesh = molecules.joined(elements, places, pairs, name=" ".join(lines[1:2]))
     if all(len(row) > 8 for row in atoms):
-        mesh.point_data["charge"] = _numbers([row[8:9] for row in atoms])[:, 0]
+        mesh.point_data["charge"] = molecules.numbers_of([row[8:9] for row in atoms])[:, 0]
     return mesh
 
 
@@ -169,7 +161,7 @@ def of_mol(path: Path) -> pv.PolyData:
         places = [[line[:10], line[10:20], line[20:30]] for line in rows[:n_atoms]]
         ends = [[line[:3].strip(), line[3:6].strip()] for line in rows[n_atoms:]]
         pairs = _pairs([str(i + 1) for i in range(n_atoms)], ends)
-    return molecules.joined(elements, _numbers(places), pairs, name=lines[0])
+    return molecules.joined(elements, molecules.numbers_of(places), pairs, name=lines[0])
 
 
 def _lines(path: Path) -> list[str]:
@@ -192,14 +184,6 @@ def _check_counts(lines: Sequence[str], *parts: Sequence[object]) -> None:
     for what, rows, count in zip(("atoms", "bonds"), parts, stated, strict=False):
         if _count(count) != len(rows):
             raise ValueError(f"{len(rows)} of {count} {what} are there")
-
-
-def _numbers(rows: Sequence[Sequence[str]]) -> Array:
-    """Return the numbers in the words of atoms."""
-    try:
-        return np.array(rows, dtype=np.float64)
-    except ValueError:
-        raise ValueError("an atom has words where its numbers are") from None
 
 
 def _pairs(names: Sequence[str], ends: Sequence[Sequence[str]]) -> Indices:

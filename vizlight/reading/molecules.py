@@ -613,8 +613,7 @@ def joined(
     if re.search("[A-Za-z]", name):
         # In a title VTK takes a bar for the end of a column.
         said.arrays["atom_type"][NAME] = " ".join(name.replace("|", " ").split())
-    meaning.attach(mesh, said)
-    return mesh
+    return meaning.attach(mesh, said)
 
 
 def _of_pairs(points: Array, pairs: Indices) -> pv.PolyData:
@@ -669,6 +668,20 @@ def _are_bridged(pairs: Indices, numbers: Indices) -> Bools:
     joined = scipy.sparse.csr_array((np.ones(len(ends), np.intp), tuple(ends.T)), shape=size)
     shared = joined[pairs[:, 0]].multiply(joined[pairs[:, 1]]).sum(axis=1)
     return np.asarray(between & (shared > 0))
+
+
+def apart(places: Array) -> float:
+    """Return the median distance of nearest neighbours among two atoms or more."""
+    distances: Array = np.asarray(scipy.spatial.cKDTree(places).query(places, k=2)[0])
+    return float(np.median(distances[:, 1]))
+
+
+def numbers_of(words: Sequence[str] | Sequence[Sequence[str]]) -> Array:
+    """Return the numbers in the words of atoms."""
+    try:
+        return np.array(words, dtype=np.float64)
+    except ValueError:
+        raise ValueError("an atom has words where its numbers are") from None
 
 
 def warn_of_states(path: Path, count: int, what: str = "states of a molecule") -> None:

@@ -112,8 +112,7 @@ def grid(
     if "time" in data.variables:
         said.time = str(data["time"].attrs.get("units", ""))
         mesh = series.marked(mesh, [float(data["time"].values[rays].min())], 0)
-    meaning.attach(mesh, said)
-    return mesh
+    return meaning.attach(mesh, said)
 
 
 def _places(ranges: Array, elevation: Array) -> tuple[Array, Array]:

@@ -128,8 +128,7 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
             # Coordinates and heights of one unit, which it mostly is.
             grid.field_data[UNIT] = ["metre"]
             said.notes.append("lengths and heights taken for metres")
-    meaning.attach(grid, said)
-    return grid
+    return meaning.attach(grid, said)
 
 
 def _stack(file: Foreign, path: Path, nodata: float | None) -> pv.ImageData | None:
@@ -166,8 +165,7 @@ def _stack(file: Foreign, path: Path, nodata: float | None) -> pv.ImageData | No
     notes += fills.say(path, [missing] if missing else [])
     if "spacing" not in said:
         notes.append("pages are taken to be as far apart as pixels")
-    meaning.attach(volume, meaning.Meaning(axes=[*meaning.PAGE, "z up"], notes=notes))
-    return volume
+    return meaning.attach(volume, meaning.Meaning(axes=[*meaning.PAGE, "z up"], notes=notes))
 
 
 def _bands(file: Foreign, stem: str) -> tuple[dict[str, Raw], dict[str, str], Kinds]:
@@ -310,9 +308,7 @@ def _grid(file: Foreign) -> tuple[pv.ImageData | pv.StructuredGrid, tuple[Slice,
     # Rows that are turned or sheared: each point has a place of its own.
     u, v = np.meshgrid(columns, rows)
     points = np.stack([a * u + b * v + c, d * u + e * v + f, np.zeros_like(u)], axis=-1)
-    grid = pv.StructuredGrid()
-    grid.dimensions = (file.width, file.height, 1)
-    grid.points = points.reshape(-1, 3)
+    grid = blocks.structured(points.reshape(-1, 3), (file.width, file.height, 1))
     return grid, (slice(None), slice(None))
 
 

@@ -233,7 +233,7 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
     with reading, messages.captured_errors() as errors, np.errstate(all="ignore"):
         _check_before(path, selection)
         try:
-            data: Foreign = _found(path, selection.time, selection.at, selection.nodata)
+            data: Foreign = _found(path, selection)
             if _faults(errors):
                 # Its cells may end the process.
                 meshes = [block for block in blocks.all_blocks(data) if block.n_points]
@@ -436,7 +436,7 @@ def _check_block(mesh: pv.DataSet, path: Path) -> None:
 
 
 def _whole(
-    data: Foreign, suffix: str, overlays: Sequence[Path], time: object, notes: list[str]
+    data: Foreign, suffix: str, overlays: Sequence[Path], time: float | str | None, notes: list[str]
 ) -> Foreign:
     """Return one upright mesh of the contents of a file with a suffix, with the values over it.
 
@@ -474,7 +474,7 @@ def _whole(
     for path in overlays:
         if path.suffix.lower() in (*cf_grids.SUFFIXES, *rasters.SUFFIXES):
             step = time if path.suffix.lower() in cf_grids.SUFFIXES else None
-            cf_grids.add(mesh, _found(path, step), path)
+            cf_grids.add(mesh, _found(path, Selection(step)), path)
             continue
         if path.suffix.lower() in tables.SUFFIXES:
             tables.add(mesh, path)
@@ -577,17 +577,12 @@ def _unpacked(path: Path, read: Callable[[Path], list[pv.DataSet]]) -> list[pv.D
             raise FileError(str(error).replace(str(inner), str(path))) from error
 
 
-def _found(
-    path: Path,
-    time: object,
-    at: Mapping[str, object] | None = None,
-    nodata: float | None = None,
-) -> pv.DataObject:
+def _found(path: Path, selection: Selection) -> pv.DataObject:
     """Return the data of the first reader that knows a file."""
     contents: pv.DataObject | None = None
     if not series.is_case(path):
-        contents = formats.read(path, time, at=at, nodata=nodata)
-    contents = series.read(path, time) if contents is None else contents
+        contents = formats.read(path, selection.time, at=selection.at, nodata=selection.nodata)
+    contents = series.read(path, selection.time) if contents is None else contents
     contents = _by_package(path) if contents is None else contents
     if path.suffix.lower() in _MESHERS:
         # As a block it is reduced to its cells of the highest dimension, see

@@ -93,8 +93,8 @@ def read_meta(path: Path) -> pv.DataSet:
     path : pathlib.Path
     """
     image: pv.DataSet = series.unchecked(pv.get_reader(path))  # type: ignore[no-untyped-call]
-    with path.open("rb") as file:
-        head = file.read(_HEAD).partition(b"ElementDataFile")[0].decode("utf-8", "replace")
+    begin = file_parts.first_bytes(path, _HEAD)
+    head = begin.partition(b"ElementDataFile")[0].decode("utf-8", "replace")
     fields = dict(re.findall(r"(?m)^(\w+)[ \t]*=[ \t]*(.*?)\s*$", head))
     names = ("TransformMatrix", "Rotation", "Orientation")
     rows = next((fields[name] for name in names if name in fields), "1 0 0 0 1 0 0 0 1")

@@ -155,8 +155,7 @@ def _polylines(
         _check.warn(f"file: data beside the lines are left out: {', '.join(odd)}")
     # By the header of the file.
     mesh.field_data[UNIT] = ["millimetre"]
-    meaning.attach(mesh, meaning.Meaning(axes=[*meaning.ANATOMY]))
-    return mesh
+    return meaning.attach(mesh, meaning.Meaning(axes=[*meaning.ANATOMY]))
 
 
 def _attach(data: pv.DataSetAttributes, name: object, array: Raw) -> None:

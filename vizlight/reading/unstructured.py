@@ -109,9 +109,7 @@ def _attributes(file: Foreign, name: str) -> dict[str, Foreign]:
 
 
 def _of_ugrid(
-    file: Foreign,
-    name: str,
-    letter_of: Callable[[str, Mapping[str, Foreign]], str],
+    file: Foreign, name: str, letter_of: Callable[[str, Mapping[str, Foreign]], str]
 ) -> Topology:
     """Return the mesh that a variable of UGRID describes."""
     attributes = _attributes(file, name)

@@ -247,5 +247,4 @@ def _scene(shapes: Sequence[pv.PolyData], unit: str) -> pv.MultiBlock:
     if not shapes:
         raise ValueError("its scene places no faces")
     scene = pv.MultiBlock(list(shapes))
-    meaning.attach(scene, meaning.Meaning(axes=[f"x in {unit}", "y", "z"]))
-    return scene
+    return meaning.attach(scene, meaning.Meaning(axes=[f"x in {unit}", "y", "z"]))

@@ -263,10 +263,7 @@ def _results(plan: Plan) -> Iterator[Line]:
 
 
 def decide(
-    scene: Scene,
-    layout: Layout,
-    options: ShadingOptions,
-    dtype: DTypeLike | None = None,
+    scene: Scene, layout: Layout, options: ShadingOptions, dtype: DTypeLike | None = None
 ) -> Plan:
     """Return the plan for inputs of a layout; see :func:`vizlight.shading.engine.plan`."""
     _check.instance("scene", scene, Scene)

@@ -124,10 +124,7 @@ def _put(w: Algebra, plan: Plan, diffuse: Total, specular: Total) -> None:
         value = reduce(add, terms, ambient)
         return value if scale is None else formulas.depth_cue(value, scale, grey)
 
-    parts = (
-        ("diffuse", diffuse, material.diffuse),
-        ("specular", specular, material.specular),
-    )
+    parts = (("diffuse", diffuse, material.diffuse), ("specular", specular, material.specular))
     # A point without light has 0 here, so that the ambient term alone is left of it.
     terms = {name: w.sound(total.white * w.number(k), 0.0) for name, total, k in parts if total}
     grey = 0.0 if cue is None else w.number(cue.cue)

@@ -75,12 +75,7 @@ class Between:
         Factors by which tangents have been divided.
     """
 
-    def __init__(
-        self,
-        inputs: ShadingInputs,
-        scene: Scene,
-        options: ShadingOptions,
-    ) -> None:
+    def __init__(self, inputs: ShadingInputs, scene: Scene, options: ShadingOptions) -> None:
         inputs = inputs.of_faces()
         self.inputs, self.scene = inputs, scene
         self.options = dataclasses.replace(options, precision="float64", components=False)

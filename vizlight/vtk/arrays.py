@@ -96,13 +96,7 @@ def named(data: vtkDataSetAttributes, name: str) -> AnyArray | None:
     return None if array is None else vtk_cells.as_numpy(array)
 
 
-def array_of(
-    mesh: Dataset,
-    name: str,
-    value: object,
-    *,
-    sizes: Collection[int] = (),
-) -> Array:
+def array_of(mesh: Dataset, name: str, value: object, *, sizes: Collection[int] = ()) -> Array:
     """Return a point array of real numbers, from its name or from an array with those values.
 
     A cell array is an error. Errors name the arrays with a number of components among ``sizes``, if

@@ -256,11 +256,7 @@ BEYOND = 0.01
 
 
 def split_faces(
-    points: Raw,
-    ids: Indices,
-    ends: Indices,
-    angle: float,
-    twins: Indices | None = None,
+    points: Raw, ids: Indices, ends: Indices, angle: float, twins: Indices | None = None
 ) -> tuple[Indices, Indices, Bools]:
     """Return the corners of faces at points that are split, and the point that each point was.
 

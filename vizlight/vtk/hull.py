@@ -55,10 +55,7 @@ from vizlight.vtk.drawn import DrawnCells
 Grid: TypeAlias = vtkImageData | vtkRectilinearGrid | vtkStructuredGrid
 
 #: Attributes of rational cells: weights of points, and degrees of cells along their axes.
-_WEIGHTS, _DEGREES = (
-    vtkDataSetAttributes.RATIONALWEIGHTS,
-    vtkDataSetAttributes.HIGHERORDERDEGREES,
-)
+_WEIGHTS, _DEGREES = (vtkDataSetAttributes.RATIONALWEIGHTS, vtkDataSetAttributes.HIGHERORDERDEGREES)
 
 
 def as_lagrange(grid: vtkUnstructuredGrid) -> vtkUnstructuredGrid:

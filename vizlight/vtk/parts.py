@@ -92,13 +92,7 @@ def part_of(
             base = tangents_of(mesh, options.conditioned, n, argument="conditioned")
         elif tangents is None or options.conditioned:
             sided = sided_normals(
-                mesh,
-                options.normals,
-                n,
-                options.facing,
-                kept=kept_normals,
-                vote=vote,
-                block=block,
+                mesh, options.normals, n, options.facing, kept=kept_normals, vote=vote, block=block
             )
             # Lines and vertices beside faces: each point is lit as what it is, in one call of the
             # engine.

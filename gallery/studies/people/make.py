@@ -136,7 +136,7 @@ def place(plotter, question, random):
         (row > MARGIN) & (row < SIZE[1] - MARGIN) & (column > MARGIN) & (column < SIZE[0] - MARGIN)
     )
     choice = random.choice(np.flatnonzero(far))
-    here = sample(shown.parts[0], pixels.take(np.array([choice])), camera)
+    here = sample(shown.parts[0], pixels[np.array([choice])], camera)
     at = [float(column[choice]) + 0.5, float(row[choice]) + 0.5]
     if question == "value":
         low, high = shown.parts[0].table.scalar_range

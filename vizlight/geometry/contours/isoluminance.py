@@ -201,11 +201,7 @@ class Latitudes:
 
 
 def roundness(
-    latitudes: Latitudes,
-    steps: LuminanceSteps,
-    places: Array,
-    wanted: Levels,
-    segments: int | None,
+    latitudes: Latitudes, steps: LuminanceSteps, places: Array, wanted: Levels, segments: int | None
 ) -> tuple[int, float]:
     """Return the number of points per circle and the resulting luminance error."""
     if segments is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -20,13 +21,16 @@ MOST_CROSSINGS = 300
 EDGES = 1 << 19
 
 
-@dataclass
 class Columns:
-    """Base class of rows with arrays, or such rows themselves, as fields."""
+    """Base class of rows, with arrays or such rows themselves as fields; others are of all rows."""
 
     def __getitem__(self, rows: Rows) -> Self:
         """Return some of the rows."""
-        return type(self)(*(column[rows] for column in vars(self).values()))
+        part = copy.copy(self)
+        for name, column in vars(self).items():
+            if isinstance(column, np.ndarray | Columns):
+                vars(part)[name] = column[rows]
+        return part
 
     def joined(self, *others: Self) -> Self:
         """Return these rows and then others."""

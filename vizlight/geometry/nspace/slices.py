@@ -149,8 +149,7 @@ def mean_frame(frame: ArrayLike, shares: Foreign, /) -> Array:
     count, k, n = rows.shape
     sparse: bool = scipy.sparse.issparse(shares)
     if not sparse or shares.dtype.kind not in "iuf":
-        expected = "a sparse array of real numbers"
-        raise _check.type_error("shares", expected, shares)
+        raise _check.type_error("shares", "a sparse array of real numbers", shares)
     parts = scipy.sparse.csr_array(shares)
     if parts.shape[1] != count:
         expected = f"a matrix of {count} columns, one per point of frame"

@@ -156,20 +156,7 @@ class _Walk:
 
     def keep(self, going: Bools) -> None:
         """Drop the rays that have ended."""
-        for name in (
-            "row",
-            "a",
-            "b",
-            "x0",
-            "y0",
-            "here",
-            "u",
-            "v",
-            "before",
-            "last",
-            "slope",
-            "length",
-        ):
+        for name in vars(self).keys() - {"x", "y", "z"}:
             setattr(self, name, getattr(self, name)[going])
 
     def step(self) -> tuple[Array, Array, Array]:

@@ -785,9 +785,9 @@ def path_of(mesh: Step) -> Path:
     return Path(source) if isinstance(source, str | Path) else Path()
 
 
-def with_file(mesh: Step, title: str) -> str:
-    """Return a title after the name of the file that a step begins with, if it does."""
-    return ", ".join(filter(None, [file_named(mesh), title]))
+def named(name: str, title: str) -> str:
+    """Return a title after a name, if there is one."""
+    return f"{name}, {title}" if name else title
 
 
 def titled(

@@ -33,7 +33,7 @@ from vizlight.mesh import meaning, records
 from vizlight.mesh.strokes import FLAT, TUBE
 from vizlight.model import kernels
 from vizlight.vtk.polylines import has_lines_only
-from vizlight.vtk.topology import place_numbers
+from vizlight.vtk.topology import coincident
 
 if TYPE_CHECKING:
     from vizlight._types import Array, Bools, Foreign, Keywords
@@ -359,9 +359,7 @@ def _colors_of_flow(case: Case, mesh: Step, lines: Step) -> tuple[Keywords, str,
 def _in_one_piece(mesh: Step) -> Step:
     """Return the step that joins blocks of a grid where they meet, which else have walls there."""
     grid = mesh.run()
-    if not isinstance(grid, pv.UnstructuredGrid):
-        return mesh
-    if len(np.unique(place_numbers(np.asarray(grid.points)))) == grid.n_points:
+    if not isinstance(grid, pv.UnstructuredGrid) or coincident(np.asarray(grid.points)) is None:
         return mesh
     return Step("whole", ".clean", mesh, produce_merge_map=False)
 

@@ -22,8 +22,8 @@ from vizlight.looks.recipes.drawing import (
     Layer,
     colors_of_kinds,
     file_named,
+    named,
     titled_length,
-    with_file,
 )
 from vizlight.looks.recipes.fields import bar_of_lengths, colors_of_lengths, pixel_of
 from vizlight.looks.steps import Step
@@ -119,7 +119,7 @@ def lines(case: Case) -> Drawing:
         layer = Layer(_by_direction(case.lit(mesh, even_light(camera))), shown | pen)
         table = Step("", "vizlight.maps.directions", meaning.ways(mesh.run()))
         key: Keywords = {"question": "value", "cmap": table}
-        key["title"] = with_file(case.data, "direction")
+        key["title"] = named(file_named(case.data), "direction")
         if longest is not None:
             key["title"] += f"; the longest {mesh.run().n_cells} of {case.data.run().n_cells} lines"
         words = "lines by their direction"
@@ -278,9 +278,8 @@ def backbone(case: Case) -> Drawing:
     # A fold is seen from one side, whatever its values are.
     frame = wishes.camera(whole, chains.eye(solid))
     drawing = surfaces.values(replace(chains, wishes=replace(wishes, frame=frame)))
-    words = [_molecule_named(case.data)]
-    titles = [", ".join(filter(None, [*words, str(key["title"])])) for key in drawing.keys]
-    keys = [key | {"title": title} | bar for key, title in zip(drawing.keys, titles, strict=True)]
+    name_of = _molecule_named(case.data)
+    keys = [key | {"title": named(name_of, key["title"])} | bar for key in drawing.keys]
     drawing = replace(drawing, words=f"backbone in the colours of {name}", keys=keys)
     drawing = replace(drawing, notes=[*drawing.notes, *_on_ligands(case.data.run(), ligands.run())])
     return with_molecule(case, drawing, ligands, BESIDE_CHAINS) if has_ligands else drawing

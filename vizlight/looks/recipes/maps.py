@@ -163,9 +163,7 @@ def _with_isolines(case: Case, drawing: Drawing, beside: Keywords, coasts: Step 
             # The pale middle of other bands is like the grey of land.
             cmap = cmap or ON_WARM_SEA
         table = Step("", BANDS, inner, (first_end, last_end), *filter(None, [cmap]))
-        first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
-        of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
-        keys = [key | of_bar for key in keys]
+        return _in_classes(replace(drawing, keys=keys), [first, *layers, *others], table, edges)
     return replace(drawing, layers=[first, *layers, *others], keys=keys)
 
 
@@ -173,10 +171,22 @@ def _lacks_values(mesh: Step, name: str) -> bool:
     return not np.isfinite(mesh.run().point_data[name]).all()
 
 
+def _in_classes(
+    drawing: Drawing, layers: Sequence[Layer], table: Step, edges: Sequence[float]
+) -> Drawing:
+    """Return a drawing of layers, the first of them in classes of colours, as in the keys."""
+    first, *others = layers
+    # Those that a table replaces.
+    kept = {key: value for key, value in first.keywords.items() if key not in ("clim", "nan_color")}
+    first = replace(first, keywords={**kept, "cmap": table})
+    of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
+    keys = [key | of_bar for key in drawing.keys]
+    return replace(drawing, layers=[first, *others], keys=keys)
+
+
 def _with_classes(case: Case, drawing: Drawing) -> Drawing:
     """Return the drawing of vectors on a map with their lengths in classes of colours."""
-    first, *others = drawing.layers
-    cmap, clim = first.keywords.get("cmap"), first.keywords.get("clim")
+    cmap, clim = (drawing.layers[0].keywords.get(name) for name in ("cmap", "clim"))
     is_field = (
         case.map_frame is not None and case.array is not None and case.array.role == "vectors"
     )
@@ -185,9 +195,7 @@ def _with_classes(case: Case, drawing: Drawing) -> Drawing:
     low, high = clim
     edges = classes(even_levels(low, high, MOST_CLASSES), (low, high))
     table = Step("", BANDS, edges[1:-1], (edges[0], edges[-1]), cmap)
-    first = replace(first, keywords={**_without_limits(first.keywords), "cmap": table})
-    of_bar: Keywords = {"cmap": table, "levels": edges, "clim": (edges[0], edges[-1])}
-    return replace(drawing, layers=[first, *others], keys=[key | of_bar for key in drawing.keys])
+    return _in_classes(drawing, drawing.layers, table, edges)
 
 
 def classes(levels: Sequence[float], ends: tuple[float, float]) -> list[float]:
@@ -205,11 +213,6 @@ def classes(levels: Sequence[float], ends: tuple[float, float]) -> list[float]:
     step = (levels[1] - levels[0]) / (2 if len(levels) <= FEW_LINES else 1)
     first, last = math.floor(ends[0] / step + 1e-9), math.ceil(ends[1] / step - 1e-9)
     return [float(f"{i * step:.12g}") for i in range(first, last + 1)]
-
-
-def _without_limits(keywords: Keywords) -> Keywords:
-    """Return keywords of a mesh without those that a lookup table replaces."""
-    return {name: value for name, value in keywords.items() if name not in ("clim", "nan_color")}
 
 
 def _has_coasts(case: Case, *, asked: bool | None) -> bool:

@@ -391,9 +391,9 @@ def _is_of_single_points(case: Case, array: Named) -> bool:
     sizes = [size for size in reversed(dimensions(mesh)) if size > 1]
     if array.of_cells or array.role != "values" or len(sizes) != 2:
         return False
-    known = np.isfinite(np.asarray(mesh.point_data[array.name])).reshape(sizes)
-    seen = scipy.ndimage.binary_opening(known, np.ones((2, 2), dtype=np.bool_))
-    return bool(seen.sum() < known.sum() / 2)
+    finite = np.isfinite(np.asarray(mesh.point_data[array.name])).reshape(sizes)
+    seen = scipy.ndimage.binary_opening(finite, np.ones((2, 2), dtype=np.bool_))
+    return bool(seen.sum() < finite.sum() / 2)
 
 
 def _by_corner(case: Case, array: Named) -> Step:
