@@ -14,6 +14,8 @@ hypothesis.settings.register_profile(
 hypothesis.settings.load_profile("suite")
 # A test's threads and blocks must not depend on the machine.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
+# Until all tests are collected nearly nothing is garbage, and the search for it takes long.
+gc.disable()
 
 
 def pytest_addoption(parser):
@@ -22,13 +24,14 @@ def pytest_addoption(parser):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
-    """Count all but every n-th case of a test that is sampled among the slow ones."""
+    """Leave all but every n-th case of a test that is sampled to runs of all tests."""
     counts = collections.Counter()
     for item in items:
         if (mark := item.get_closest_marker("sampled")) is not None:
             name = item.nodeid.partition("[")[0]
             if counts[name] % mark.args[0]:
                 item.add_marker(pytest.mark.slow)
+                item.add_marker(pytest.mark.rest)
             counts[name] += 1
     _skip_drawing(items)
 
@@ -51,6 +54,7 @@ def pytest_collection_finish():
     """Search for garbage in what the tests make, not in all that was imported and collected."""
     gc.collect()
     gc.freeze()
+    gc.enable()
 
 
 def pytest_terminal_summary(terminalreporter, config):

@@ -87,6 +87,7 @@ BROKEN = {
 
 
 @pytest.mark.slow
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", BROKEN)
 def test_a_picture_is_drawn_or_refused_where_the_library_is_broken(name, ball, tmp_path):
     out = tmp_path / "lit.png"

@@ -86,6 +86,7 @@ def mended(names):
 
 
 @pytest.mark.slow
+@pytest.mark.sampled(5)
 @pytest.mark.opengl
 @pytest.mark.parametrize("path", GUIDE, ids=lambda path: path.stem)
 def test_a_page_of_the_guide_runs_and_writes_its_pictures(path, tmp_path, monkeypatch):

@@ -12,15 +12,15 @@ pytestmark = pytest.mark.skipif(not hasattr(sys, "getdlopenflags"), reason="fork
 
 
 @pytest.mark.slow
-def test_forty_walks():
+def test_twenty_walks():
     # A process without threads, which forks.
     run = subprocess.run(
-        [sys.executable, walks.__file__, "40", "--seed", "3"],
+        [sys.executable, walks.__file__, "20", "--seed", "3"],
         check=False,
         capture_output=True,
         text=True,
     )
-    assert (run.returncode, run.stdout) == (0, "40 walks\n"), run.stdout + run.stderr
+    assert (run.returncode, run.stdout) == (0, "20 walks\n"), run.stdout + run.stderr
 
 
 def raw(mesh, random):

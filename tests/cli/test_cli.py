@@ -179,6 +179,7 @@ def test_without_opengl_the_mesh_is_written_and_the_exit_code_is_1(
 
 
 @pytest.mark.slow
+@pytest.mark.sampled(2)
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="streams of a POSIX shell")
 @pytest.mark.parametrize("streams", ["2>&-", "<&- >&- 2>&-", ">/dev/full", "| true"])
 def test_the_work_is_done_where_nobody_reads_what_is_said(streams, tmp_path):

@@ -93,7 +93,7 @@ def test_the_light_of_a_question_is_that_of_any_command(command, question, folde
     assert "presets" not in done(*command.split(), "--script")
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(8)
 @pytest.mark.opengl
 @pytest.mark.parametrize("line", COMMANDS.values(), ids=COMMANDS)
 def test_the_printed_script_does_the_same(line, folder, tmp_path, monkeypatch, run, done):

@@ -18,12 +18,11 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 ROOT = Path(__file__).resolve().parents[2]
 #: Words of each command, and the names of what it leaves in the folder.
 COMMANDS = {
-    "light": ("light ball.vtp --for shape -o lit.vtp", ["lit.vtp"]),
-    "light with a picture": (
-        "light ball.vtp --for shape -o lit.vtp -o lit.png", ["lit.png", "lit.vtp"]
-    ),
     "light in processes": (
         "light box.vti --contour height --workers 2 --slab 0.002 -o lit.pvtp", ["lit", "lit.pvtp"]
+    ),
+    "light with a picture": (
+        "light ball.vtp --for shape -o lit.vtp -o lit.png", ["lit.png", "lit.vtp"]
     ),
     "contours": ("contours ball.vtp -o bands.vtm", ["bands", "bands.vtm"]),
     "demo": ("demo --out demo --size 200x150", ["demo"]),
@@ -39,6 +38,7 @@ COMMANDS = {
 
 
 @pytest.mark.slow
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", COMMANDS)
 def test_nothing_listens_and_nothing_is_open_to_others(name, tmp_path):
     work, temporary, home = (tmp_path / part for part in ("work", "tmp", "home"))

@@ -112,17 +112,19 @@ def engine_colors(mesh, scene, camera, options, colored):
 
 
 #: Firefox takes minutes.
-FOX = pytest.param(
-    "fox",
-    marks=[
-        pytest.mark.slow,
-        pytest.mark.skipif(bool(firefox.MISSING), reason=f"needs {', '.join(firefox.MISSING)}"),
-    ],
+FOX = [
+    pytest.mark.slow,
+    pytest.mark.skipif(bool(firefox.MISSING), reason=f"needs {', '.join(firefox.MISSING)}"),
+]
+IN_FIREFOX = ("conditioned lines", "two lights, one near, in fog")
+
+
+@pytest.mark.parametrize(
+    ("case", "opened"),
+    [(case, "browser") for case in CASES]
+    + [pytest.param(case, "fox", marks=FOX) for case in IN_FIREFOX],
+    indirect=["opened"],
 )
-
-
-@pytest.mark.parametrize("opened", ["browser", FOX], indirect=True)
-@pytest.mark.parametrize("case", CASES)
 def test_page_has_the_light_of_the_engine_before_and_after_turning(case, opened, tmp_path):
     """The browser draws both: the light that follows, and the numbers of the filters as colours.
 

@@ -57,8 +57,9 @@ def test_the_shares_multiply_each_light_and_the_ambient_term(skylit):
 
 
 def test_points_deep_inside_are_darker_and_the_outermost_are_not():
-    mesh = lines(1500)
-    lit = vizlight.illuminate(mesh, SCENE.replace(lights=[FAR]), bundle=QUICK, occlusion="sky")
+    mesh = lines(900)
+    thick = dataclasses.replace(QUICK, diameter=mesh.length / 350)
+    lit = vizlight.illuminate(mesh, SCENE.replace(lights=[FAR]), bundle=thick, occlusion="sky")
     height, share = np.asarray(mesh.points)[:, 2], np.asarray(lit["transmittance"])
     assert share[height > 0.8].mean() > 0.9
     assert share[height < -0.5].mean() < 0.3
@@ -159,11 +160,12 @@ def test_neither_the_unit_nor_the_place_matters(kind, scale, far, unmoved):
 
 
 def test_the_default_diameter_has_the_depth_asked_for_or_a_share_of_the_size():
-    dense = vizlight.illuminate(lines(6000), SCENE, bundle=QUICK)
-    record = vizlight.provenance(dense)["bundle"]
     ball = lines(6000)
+    dense = vizlight.illuminate(ball, SCENE.replace(lights=[FAR]), bundle=QUICK)
+    record = vizlight.provenance(dense)["bundle"]
     assert record["diameter"] < ball.length / 500
-    thin = vizlight.illuminate(ball, SCENE, bundle=dataclasses.replace(QUICK, depth=0.5))
+    half = dataclasses.replace(QUICK, depth=0.5)
+    thin = vizlight.illuminate(ball, SCENE.replace(lights=[FAR]), bundle=half)
     ratio = vizlight.provenance(thin)["bundle"]["diameter"] / record["diameter"]
     assert ratio == pytest.approx(0.25)
     few = vizlight.illuminate(lines(20), SCENE, bundle=QUICK)

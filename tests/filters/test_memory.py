@@ -203,6 +203,7 @@ print((status("VmHWM") - before) / size)
 
 
 @pytest.mark.slow
+@pytest.mark.sampled(3)
 @pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="Linux tells the peak")
 @pytest.mark.parametrize(
     "make",

@@ -1,8 +1,8 @@
 """Slices of a stack on one sheet, as they lie in space."""
 
 import numpy as np
-import pytest
 import pyvista as pv
+from refusals import refusals
 
 import vizlight
 from vizlight import files
@@ -57,14 +57,10 @@ def test_few_slices_far_apart_are_drawn_as_a_sheet():
     assert not montages.is_stack(pv.Sphere())
 
 
-@pytest.mark.parametrize(
-    ("volume", "name", "error"),
-    [
-        (pv.Sphere(), "scan", "volume: expected an image or a grid"),
-        (stack(), "other", "name: expected the name of a point array of one component, one of"),
-        (stack(), 3, "name: expected the name of a point array"),
-    ],
+test_a_sheet_needs_a_stack_and_its_array = refusals(
+    files.side_by_side,
+    (pv.Sphere(), "scan", "volume: expected an image or a grid"),
+    (stack(), "other", "name: expected the name of a point array of one component, one of"),
+    (stack(), 3, "name: expected the name of a point array"),
+    kind=(TypeError, ValueError),
 )
-def test_a_sheet_needs_a_stack_and_its_array(volume, name, error):
-    with pytest.raises((TypeError, ValueError), match=error):
-        files.side_by_side(volume, name)

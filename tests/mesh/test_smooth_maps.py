@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import refusals
 from scipy.interpolate import PchipInterpolator
 
 from vizlight.cartography import smoothed
@@ -50,18 +51,13 @@ def test_a_plane_stays_a_plane():
     np.testing.assert_allclose(smooth["v"], smooth.points @ (1.0, -2.0, 0.0), atol=1e-5)
 
 
-@pytest.mark.parametrize(
-    ("mesh", "name", "factor", "kind", "words"),
-    [
-        (pv.Plane(), "v", 2, TypeError, "mesh: expected a grid"),
-        (pv.ImageData(dimensions=(3, 3, 3)), "v", 2, ValueError, "mesh: expected a grid of one"),
-        (grid(), "w", 2, ValueError, "name: expected the name of an array"),
-        (grid(), "v", 0, ValueError, "factor"),
-    ],
+test_what_does_not_fit = refusals(
+    smoothed,
+    (pv.Plane(), "v", 2, "mesh: expected a grid", TypeError),
+    (pv.ImageData(dimensions=(3, 3, 3)), "v", 2, "mesh: expected a grid of one"),
+    (grid(), "w", 2, "name: expected the name of an array"),
+    (grid(), "v", 0, "factor"),
 )
-def test_what_does_not_fit(mesh, name, factor, kind, words):
-    with pytest.raises(kind, match=words):
-        smoothed(mesh, name, factor)
 
 
 def test_values_end_halfway_to_missing_ones():

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from refusals import refusals
 
 from vizlight.model import brightness
 
@@ -44,23 +45,16 @@ def test_result_is_a_float_for_a_number():
     assert isinstance(brightness.exponent(1, 3), float)
 
 
-@pytest.mark.parametrize(
-    ("k", "n", "error", "words"),
-    [
-        (3, 3, ValueError, "k: expected a dimension less than n = 3, got 3"),
-        (0, 3, ValueError, "k: expected an integer of at least 1"),
-        (1, 1, ValueError, "n: expected an integer of at least 2"),
-        (1.0, 3, TypeError, "k: expected an integer"),
-        (True, 3, TypeError, "k: expected an integer"),
-    ],
+DIMENSIONS = (
+    (3, 3, "k: expected a dimension less than n = 3, got 3"),
+    (0, 3, "k: expected an integer of at least 1"),
+    (1, 1, "n: expected an integer of at least 2"),
+    (1.0, 3, "k: expected an integer", TypeError),
+    (True, 3, "k: expected an integer", TypeError),
 )
-def test_bad_dimensions(k, n, error, words):
-    for call in (brightness.mean_intensity, brightness.exponent):
-        with pytest.raises(error, match=words):
-            call(k, n)
-
-
-@pytest.mark.parametrize("p", [-1.0, np.nan, np.inf, [1.0, -2.0]])
-def test_bad_exponents(p):
-    with pytest.raises(ValueError, match="p: expected finite exponents from 0"):
-        brightness.mean_intensity(1, 3, p)
+test_bad_dimensions_of_a_mean = refusals(brightness.mean_intensity, *DIMENSIONS)
+test_bad_dimensions_of_an_exponent = refusals(brightness.exponent, *DIMENSIONS)
+test_bad_exponents = refusals(
+    lambda p: brightness.mean_intensity(1, 3, p),
+    *((p, "p: expected finite exponents from 0") for p in (-1.0, np.nan, np.inf, [1.0, -2.0])),
+)

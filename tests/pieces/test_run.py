@@ -118,6 +118,7 @@ def test_arrays_of_the_user_with_names_of_vtk_are_kept(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("kind", "options"),
     [

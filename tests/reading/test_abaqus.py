@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from refusals import refused_files
 
 import vizlight
-from vizlight.files import FileError
 from vizlight.reading import abaqus
 
 NODES = "*NODE, NSET=ALL\n1, 0, 0, 0\n** a comment\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n"
@@ -64,23 +64,18 @@ def test_types_of_elements(name, expected):
     assert abaqus._kind(name) == expected
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("*INCLUDE, INPUT=none.inp\n", "of 'none.inp': no such file beside it"),
-        ("*INCLUDE, INPUT=a.inp\n", "'a.inp' includes itself"),
-        (f"{NODES}*NGEN\n1, 9\n", r"\*NGEN is not read: write the mesh with each node"),
-        ("*NODE, SYSTEM=C\n1, 0, 0, 0\n", "SYSTEM= other than R is not read"),
-        (f"{NODES}*ELEMENT, TYPE=S3\n1, 1, 2\n", "3 numbers are no elements of S3, of 3 nodes"),
-        (f"{NODES}*ELEMENT, TYPE=S3\n1, 1, 2, 9\n", "an element has the node 9"),
-        ("*INSTANCE, NAME=I, PART=P\n", "of the part 'P', which is not there"),
-        (f"{NODES}*ELEMENT, TYPE=S3\n1, 1, 2, x\n", "number should be"),
-        (NODES, "no points"),
-    ],
+test_what_cannot_be_read = refused_files(
+    read,
+    ("*INCLUDE, INPUT=none.inp\n", "of 'none.inp': no such file beside it"),
+    ("*INCLUDE, INPUT=a.inp\n", "'a.inp' includes itself"),
+    (f"{NODES}*NGEN\n1, 9\n", r"\*NGEN is not read: write the mesh with each node"),
+    ("*NODE, SYSTEM=C\n1, 0, 0, 0\n", "SYSTEM= other than R is not read"),
+    (f"{NODES}*ELEMENT, TYPE=S3\n1, 1, 2\n", "3 numbers are no elements of S3, of 3 nodes"),
+    (f"{NODES}*ELEMENT, TYPE=S3\n1, 1, 2, 9\n", "an element has the node 9"),
+    ("*INSTANCE, NAME=I, PART=P\n", "of the part 'P', which is not there"),
+    (f"{NODES}*ELEMENT, TYPE=S3\n1, 1, 2, x\n", "number should be"),
+    (NODES, "no points"),
 )
-def test_what_cannot_be_read(text, words, tmp_path):
-    with pytest.raises(FileError, match=words):
-        read(tmp_path, text)
 
 
 def test_a_file_of_abaqus_is_not_one_of_avs(tmp_path):

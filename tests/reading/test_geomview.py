@@ -5,6 +5,7 @@ import gzip
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import refused_files
 
 import vizlight
 from vizlight.files import FileError
@@ -60,22 +61,17 @@ def test_a_mesh_of_4_space_is_closed_where_it_says_so(tmp_path):
     np.testing.assert_array_equal(heights.points[4], [1, 1, 4])
 
 
-@pytest.mark.parametrize(
-    ("text", "match"),
-    [
-        ("OFF BINARY\n", "binary file of Geomview"),
-        ("OFF\n4 1 0\n0 0 0\n", "1 of 5 vertices and faces"),
-        ("OFF\n999999999999 1 0\n0 0 0\n", "vertices and faces are there"),
-        ("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n", "2 of 3 corners"),
-        ("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n", "cells of the points 0 to 2"),
-        ("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "different numbers of components"),
-        ("hello\n", "no numbers of vertices"),
-        ("", "no numbers of vertices"),
-    ],
+test_what_is_not_whole_is_refused = refused_files(
+    read,
+    ("OFF BINARY\n", "binary file of Geomview"),
+    ("OFF\n4 1 0\n0 0 0\n", "1 of 5 vertices and faces"),
+    ("OFF\n999999999999 1 0\n0 0 0\n", "vertices and faces are there"),
+    ("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n", "2 of 3 corners"),
+    ("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n", "cells of the points 0 to 2"),
+    ("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "different numbers of components"),
+    ("hello\n", "no numbers of vertices"),
+    ("", "no numbers of vertices"),
 )
-def test_what_is_not_whole_is_refused(text, match, tmp_path):
-    with pytest.raises(FileError, match=match):
-        read(tmp_path, text)
 
 
 @pytest.mark.parametrize(

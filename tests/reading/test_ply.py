@@ -5,6 +5,7 @@ import struct
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import refused_files
 
 import vizlight
 from vizlight.files import FileError
@@ -88,51 +89,41 @@ def test_texture_of_the_corners_of_faces_parts_points(tmp_path):
     np.testing.assert_allclose(mesh["TCoords"][mesh.regular_faces[1]], [[0.5, 0], [1, 1], [0, 1]])
 
 
-@pytest.mark.parametrize(
-    ("head", "rows", "words"),
-    [
-        (("element face 1", LIST), ("3 0 1 9",), "cells of the points 0 to 3, got 0 to 9"),
-        (("element face 1", LIST), ("3 0 1 -9",), "cells of the points 0 to 3, got -9 to 1"),
-        (("element face 1", LIST), ("-3 0 1 2",), "a list of 'face' has -3 numbers"),
-        (("element face 1", LIST), ("4 0 1 2",), "4 of 5 numbers of a line are there"),
-        (("element face 2", LIST), ("3 0 1 2",), "1 of 2 rows of 'face' are there"),
-        (("element face 1", LIST), ("3 0 1 1e300",), "numbers from 0 to 1e.300 as int32"),
-        (("element face 1", LIST.replace(" int", " float")), ("3 0 1 .5",), "not whole"),
-        (("element face -1", LIST), (), "a count below 0"),
-        (("element face x", LIST), (), "its header has the line 'element face x'"),
-        (("property list quark int a",), (), "its header has the line"),
-        (("property float",), (), "its header has the line 'property float'"),
-        (("-inf int a",), (), "its header has the line '-inf int a'"),
-    ],
+test_damage_is_refused = refused_files(
+    lambda folder, head, rows: read(folder, text(*POINTS, *rows, head=head)),
+    (("element face 1", LIST), ("3 0 1 9",), "cells of the points 0 to 3, got 0 to 9"),
+    (("element face 1", LIST), ("3 0 1 -9",), "cells of the points 0 to 3, got -9 to 1"),
+    (("element face 1", LIST), ("-3 0 1 2",), "a list of 'face' has -3 numbers"),
+    (("element face 1", LIST), ("4 0 1 2",), "4 of 5 numbers of a line are there"),
+    (("element face 2", LIST), ("3 0 1 2",), "1 of 2 rows of 'face' are there"),
+    (("element face 1", LIST), ("3 0 1 1e300",), "numbers from 0 to 1e.300 as int32"),
+    (("element face 1", LIST.replace(" int", " float")), ("3 0 1 .5",), "not whole"),
+    (("element face -1", LIST), (), "a count below 0"),
+    (("element face x", LIST), (), "its header has the line 'element face x'"),
+    (("property list quark int a",), (), "its header has the line"),
+    (("property float",), (), "its header has the line 'property float'"),
+    (("-inf int a",), (), "its header has the line '-inf int a'"),
 )  # fmt: skip
-def test_damage_is_refused(head, rows, words, tmp_path):
-    with pytest.raises(FileError, match=words):
-        read(tmp_path, text(*POINTS, *rows, head=head))
 
 
-@pytest.mark.parametrize(
-    ("data", "words"),
-    [
-        (b"ply\nformat ascii 1.0\n", "its header is not whole"),
-        (b"no", "no PLY file"),
-        (b"ply\nformat ternary 1.0\nend_header\n", "its header has the format 'ternary'"),
-        (b"ply\nformat ascii 1.0\nend_header\n", "no vertices with x, y and z"),
-        (text("0 0", *POINTS), "2 of 3 numbers of a line"),
-        (
-            text(head=("element face 1", LIST.replace("uchar", "char")), form="binary_big_endian")
-            + bytes(48) + struct.pack(">b3i", -3, 0, 1, 2),
-            "a list of 'face' has -3 numbers",
-        ),
-        (
-            text(head=("element face 1", LIST.replace("uchar", "float")), form="binary_big_endian")
-            + bytes(99),
-            "the lengths of the list 'vertex_indices' are no whole numbers",
-        ),
-    ],
+test_what_is_no_whole_file = refused_files(
+    read,
+    (b"ply\nformat ascii 1.0\n", "its header is not whole"),
+    (b"no", "no PLY file"),
+    (b"ply\nformat ternary 1.0\nend_header\n", "its header has the format 'ternary'"),
+    (b"ply\nformat ascii 1.0\nend_header\n", "no vertices with x, y and z"),
+    (text("0 0", *POINTS), "2 of 3 numbers of a line"),
+    (
+        text(head=("element face 1", LIST.replace("uchar", "char")), form="binary_big_endian")
+        + bytes(48) + struct.pack(">b3i", -3, 0, 1, 2),
+        "a list of 'face' has -3 numbers",
+    ),
+    (
+        text(head=("element face 1", LIST.replace("uchar", "float")), form="binary_big_endian")
+        + bytes(99),
+        "the lengths of the list 'vertex_indices' are no whole numbers",
+    ),
 )  # fmt: skip
-def test_what_is_no_whole_file(data, words, tmp_path):
-    with pytest.raises(FileError, match=words):
-        read(tmp_path, data)
 
 
 def test_the_last_line_of_a_text(tmp_path):

@@ -97,7 +97,12 @@ def test_contours_of_smooth_normals_and_of_the_solid_are_circles():
 
 @pytest.mark.opengl
 @pytest.mark.slow
-def test_presets_are_better_than_the_default_where_they_are_asked():
+def test_presets_are_better_than_the_default_where_they_are_asked(monkeypatch):
+    scenes = {way: make() for way, make in legibility.LIGHTS.items()}
+    # Of the others it is enough that they are scenes.
+    compared = ("default", "presets.direction", "presets.heading", "presets.shape")
+    few = {way: lambda way=way: scenes[way] for way in compared}
+    monkeypatch.setattr(legibility, "LIGHTS", few)
     rows = {(row.way, row.parameter): row for row in legibility.lights(("nut", "childress"), 1, 64)}
     assert {question for _, question in rows} == set(legibility.ERRORS)
     for question in ("direction", "heading", "shape"):
@@ -156,6 +161,7 @@ def test_gradients_are_those_of_the_functions(random):
 
 
 @pytest.mark.slow
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", ["isosurface", "flow on it", "fibres", "aeroplane", "globe"])
 def test_refinement_takes_a_third_of_the_points(name):
     rows = refinement.measure(name, (0.02, 0.01), (1, 2, 3, 4, 6, 8, 12, 16, 24))
@@ -229,7 +235,7 @@ def test_slopes_of_real_ground_are_those_of_its_heights():
 @pytest.mark.slow
 def test_noise_of_whole_metres_is_that_of_the_differences():
     """Rounding has the variance 1/12; Horn's weights leave 3/8 of that of central differences."""
-    coarse, fine = ({row.way: row for row in relief.shaded(n, 1)} for n in (1, 3))
+    coarse, fine = ({row.way: row for row in relief.shaded(n, 1)} for n in (1, 2))
     for rows in (coarse, fine):
         gdal, plain, *ours = (row.more["noise of metres, rms of 255"] for row in rows.values())
         assert gdal / plain == pytest.approx(np.sqrt(3 / 8), rel=0.03)
@@ -239,10 +245,10 @@ def test_noise_of_whole_metres_is_that_of_the_differences():
             < 0.8 * rows["real ground, GDAL's formula"].error
         )
     for way, row in coarse.items():
-        assert row.error / fine[way].error == pytest.approx(9, rel=0.1)
+        assert row.error / fine[way].error == pytest.approx(4, rel=0.1)
         seams = (rows[way].more["at borders of tiles, rms of 255"] for rows in (coarse, fine))
         # A one-sided slope is off by the spacing times half the curvature.
-        assert next(seams) / next(seams) == pytest.approx(3, rel=0.25)
+        assert next(seams) / next(seams) == pytest.approx(2, rel=0.25)
 
 
 @pytest.mark.slow
@@ -276,11 +282,10 @@ def test_stripes_are_read_along_not_across(degrees):
 @pytest.mark.opengl
 @pytest.mark.slow
 def test_the_example_prints_the_figures_of_the_study():
-    result = studies.run("strokes", strokes.STUDY, quick=True)
-    found = {row.way: row.error for row in result.rows}
+    # The example has no lines from seeds at random.
+    steps = [step for step in strokes.steps(True) if "streamlines at random, VTK" not in step.args]
+    found = {row.way: row.error for step in steps for row in step()}
     script = Path(studies.__file__).parents[1] / "plot_read_direction.py"
     titles = re.findall(r'"([a-zA-Z ]+): ([\d.]+)":', script.read_text(encoding="utf-8"))
-    # The example has no lines from seeds at random.
-    del found["streamlines at random, VTK"]
     for (way, error), (_, figure) in zip(found.items(), titles, strict=True):
         assert error == pytest.approx(float(figure), rel=0.1), way

@@ -81,10 +81,6 @@ def test_what_is_hidden_has_no_path_and_the_plotter_is_as_before(plotter, tmp_pa
 
 
 def test_lines_are_strokes_of_their_width_and_those_behind_end_at_the_halo(plotter, tmp_path):
-    plotter.vizlight.add_mesh(
-        pv.Line((-1, 0, 0), (1, 0, 0)), color="red", lighting=False, line_width=2
-    )
-    plotter.clear()
     for ends, color in ((((-1, 0, 0), (1, 0, 0)), "red"), (((0, -1, 1), (0, 1, 1)), "blue")):
         line = pv.Line(*ends, resolution=20)
         line["c"] = np.tile(np.array(pv.Color(color).int_rgb, np.uint8), (line.n_points, 1))

@@ -312,7 +312,7 @@ def test_thin_tubes_and_narrow_bores(wall, offset):
     assert shell.volume * shell.scale**3 == pytest.approx(expected, rel=1e-2)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("kind", solid_trees.KINDS)
 @pytest.mark.parametrize("seed", [0, 11])
 def test_random_trees(kind, seed):
