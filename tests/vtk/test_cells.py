@@ -32,3 +32,13 @@ def test_cells_with_fewer_points_than_their_type_needs_are_refused():
     types[0] = 255
     with pytest.raises(ValueError, match="expected cells of types that VTK has, got one of type"):
         cells.check_whole(grid, "mesh")
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_columns_are_those_of_the_rows_one_after_the_other_in_memory(random, dtype):
+    rows = random.normal(size=(9, 3)).astype(dtype)
+    ids = random.integers(9, size=20).astype(np.int32)
+    found = cells.columns_at(rows, ids)
+    np.testing.assert_array_equal(found.T, rows[ids])
+    assert found.dtype == np.float64
+    assert found.flags.c_contiguous
