@@ -221,12 +221,10 @@ def _of_polygons(places: Sequence[Array]) -> list[Array]:
         weight *= np.maximum(size, FLAT * near)
         weight = np.sqrt(weight) * height / near
         # A corner at the place of the next has no angle: it counts where nothing else does.
-        if not near.all():
-            same = near == 0
-            weight[same] = LEAST * height[same] / np.sqrt(longest[same])
+        same = np.flatnonzero(near == 0)
+        weight[same] = LEAST * height[same] / np.sqrt(longest[same])
         # Corners of points that are not finite say nothing, but must not spoil those around them.
-        if not np.isfinite(weight).all():
-            weight[~np.isfinite(weight)] = 0
+        np.copyto(weight, 0, where=~np.isfinite(weight))
         weighted.append(normal * weight)
     return weighted
 

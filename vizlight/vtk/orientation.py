@@ -14,14 +14,7 @@ from vizlight import _pool
 from vizlight._types import Array, Bools, Indices, Raw, Slice
 from vizlight.model import kernels
 from vizlight.scene import View
-from vizlight.vtk.cells import (
-    columns_at,
-    connectivity,
-    faces,
-    finite_points,
-    places,
-    triangles,
-)
+from vizlight.vtk.cells import columns_at, connectivity, faces, finite_points, places, triangles
 from vizlight.vtk.corners import SHARP, Slivers, slivers_of
 from vizlight.vtk.topology import BLOCK, SortedEdges, ends_of, sorted_edges, topology
 
@@ -241,13 +234,6 @@ class SurfaceShape:
         away -= middle[:, self.piece[rows]] if self.count > 1 else middle
         return away
 
-    def away(self, rows: Slice) -> Array:
-        """Return some points, shape (3, n), each piece about its centroid, at a size of 1."""
-        middle, largest = self.frame
-        away = self._from_middle(rows, middle)
-        away /= largest
-        return away
-
     @functools.cached_property
     def all_finite(self) -> bool:
         """Whether all points are finite."""
@@ -324,10 +310,11 @@ class SurfaceShape:
     def score(self, normals: Array, view: View | None) -> Array:
         """Return how far the normals of each piece agree with the directions of a sheet."""
         scores = np.zeros(self.count)
+        middle, largest = self.frame
         seen = view is not None and len(view.position or view.direction or ()) == 3
         for block in _pool.blocks(len(normals), BLOCK):
             columns = normals[block].T.astype(np.float64)
-            toward = kernels.unit(self.away(block))[0]
+            toward = kernels.unit(self._from_middle(block, middle) / largest)[0]
             if seen and view is not None:
                 toward += 3 * kernels.unit(toward_eye(view, self.points[block]))[0]
             score = kernels.dot(columns, toward)
