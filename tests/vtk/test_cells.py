@@ -32,3 +32,11 @@ def test_cells_with_fewer_points_than_their_type_needs_are_refused():
     types[0] = 255
     with pytest.raises(ValueError, match="expected cells of types that VTK has, got one of type"):
         cells.check_whole(grid, "mesh")
+
+
+def test_columns_are_those_of_the_rows_one_after_the_other_in_memory(random):
+    rows, ids = random.normal(size=(9, 3)).astype(np.float32), random.integers(9, size=20)
+    columns = cells.columns_at(rows, ids)
+    np.testing.assert_array_equal(columns.T, rows[ids])
+    assert columns.dtype == np.float64
+    assert columns.flags.c_contiguous

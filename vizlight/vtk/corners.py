@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -13,7 +14,7 @@ from vizlight import _pool
 from vizlight._types import Array, Bools, Indices, Raw
 from vizlight.geometry.lines.simplices import EDGES, components
 from vizlight.model import kernels
-from vizlight.vtk.cells import as_numpy, connectivity, places, triangles
+from vizlight.vtk.cells import as_numpy, columns_at, connectivity, places, triangles
 from vizlight.vtk.topology import BLOCK, double_cover
 
 #: Height of a face, and of a corner, as a share of its longest side, below which its direction is
@@ -125,15 +126,16 @@ def _add(total: Array, points: Raw, corners: Indices) -> None:
     at = [np.ascontiguousarray(column) for column in corners.T]
     weighted = np.empty((len(at), 3, len(corners)))
     for block in _pool.blocks(len(corners), max(FEW // len(at), 1)):
-        places = [points.take(column[block], axis=0).T.astype(np.float64) for column in at]
+        places = [columns_at(points, column[block]) for column in at]
         with np.errstate(all="ignore"):
             normals = _of_quads(places) if len(at) == 4 else _of_polygons(places)
         for into, normal in zip(weighted, normals, strict=True):
             into[:, block] = normal
-    for i, normal in enumerate(weighted):
+    for ids, normal in zip(at, weighted, strict=True):
+        place = ids - low
         for k in range(3):
             # Faster than np.add.at, as long as a block has points near each other.
-            sums = np.bincount(at[i] - low, normal[k], high - low)
+            sums = np.bincount(place, normal[k], high - low)
             if used is None:
                 total[k, low:high] += sums
             else:
@@ -145,7 +147,7 @@ def _of_quads(places: Sequence[Array]) -> list[Array]:
     sides = [places[(i + 1) % 4] - places[i] for i in range(4)]
     squares = [kernels.dot(side, side) for side in sides]
     diagonals = [places[2] - places[0], places[3] - places[1]]
-    longest = np.maximum.reduce(squares)
+    longest = functools.reduce(np.maximum, squares)
     face, area = kernels.unit(kernels.cross(*diagonals))
     area *= 0.5
     height = RIGHT * np.minimum(2 * area / (FLAT * longest), 1)
@@ -167,7 +169,7 @@ def _of_quads(places: Sequence[Array]) -> list[Array]:
         if not np.isfinite(normal).all():
             normal[:, ~np.isfinite(normal).all(axis=0)] = 0
         weighted.append(normal)
-    twice = np.flatnonzero(np.minimum.reduce(squares) == 0)
+    twice = np.flatnonzero(functools.reduce(np.minimum, squares) == 0)
     if len(twice):
         of_triangles = _of_polygons([place[:, twice] for place in places])
         for normals, those in zip(weighted, of_triangles, strict=True):
@@ -180,7 +182,7 @@ def _of_polygons(places: Sequence[Array]) -> list[Array]:
     s = len(places)
     sides = [places[(i + 1) % s] - places[i] for i in range(s)]
     squares = [kernels.dot(side, side) for side in sides]
-    longest = np.maximum.reduce(squares)
+    longest = functools.reduce(np.maximum, squares)
     if s == 3:
         across = kernels.cross(sides[0], sides[1])
     else:
@@ -202,27 +204,27 @@ def _of_polygons(places: Sequence[Array]) -> list[Array]:
                 part[i] = np.where(same, part[i - 1], part[i])
     weighted: list[Array] = []
     for i in range(s):
-        ahead, behind = sides[i], -before[0][i]
+        ahead, behind = sides[i], before[0][i]
         normal, size = face, area
         if s > 3:
             # A polygon that is not plane has another normal at each corner.
-            corner, size = kernels.unit(kernels.cross(ahead, behind))
+            corner, size = kernels.unit(kernels.cross(behind, ahead))
             inward = kernels.dot(corner, face)
             # Sides in one line have no plane of their own, and at a dent their product points
             # to the back of the face.
             flat = size <= FLAT * np.maximum(squares[i], before[1][i])
             normal = np.where(flat, face, np.where(inward < 0, -corner, corner))
         # The angle of the corner, exact for sharp and for blunt ones.
-        weight = np.arctan2(size, kernels.dot(ahead, behind))
+        weight = np.arctan2(size, -kernels.dot(ahead, behind))
         near = lengths[i] * before[2][i]
         # A straight corner has no sine, but an angle.
         weight *= np.maximum(size, FLAT * near)
         weight = np.sqrt(weight) * height / near
         # A corner at the place of the next has no angle: it counts where nothing else does.
-        same = near == 0
+        same = np.flatnonzero(near == 0)
         weight[same] = LEAST * height[same] / np.sqrt(longest[same])
         # Corners of points that are not finite say nothing, but must not spoil those around them.
-        weight[~np.isfinite(weight)] = 0
+        np.copyto(weight, 0, where=~np.isfinite(weight))
         weighted.append(normal * weight)
     return weighted
 
@@ -392,7 +394,7 @@ def _face_normals(points: Raw, ids: Indices, ends: Indices) -> Array:
     for faces, corners in _by_size(ids, ends):
         for block in _pool.blocks(len(faces), BLOCK):
             at = corners[block].T
-            first, *more = (points.take(corner, axis=0).T.astype(np.float64) for corner in at)
+            first, *more = (columns_at(points, corner) for corner in at)
             sides = [corner - first for corner in more]
             across = sum(kernels.cross(a, b) for a, b in itertools.pairwise(sides))
             unit[faces[block]] = kernels.unit(np.asarray(across))[0].T
@@ -444,7 +446,7 @@ class Slivers(NamedTuple):
     squares: Array
 
 
-def slivers_of(rows: Indices, squares: Sequence[Array], longest: Array) -> Slivers:
+def slivers_of(rows: Indices, squares: Sequence[Array]) -> Slivers:
     """Return the sides of triangles of at most :data:`NEAR` of the longest.
 
     Parameters
@@ -453,9 +455,8 @@ def slivers_of(rows: Indices, squares: Sequence[Array], longest: Array) -> Slive
         Corners.
     squares : sequence of ndarray
         Squares of the side before each corner.
-    longest : ndarray, shape (n,)
-        Largest of them.
     """
+    longest = functools.reduce(np.maximum, squares)
     limit = NEAR * NEAR * longest
     near = [np.flatnonzero(square <= limit) for square in squares]
     this = np.concatenate([rows[at, i] for i, at in enumerate(near)])
@@ -476,12 +477,11 @@ def all_slivers(points: Raw, triangles: Indices) -> list[Slivers]:
     slivers = []
     for block in _pool.blocks(len(triangles), BLOCK):
         rows = triangles[block]
-        corners = [points.take(corner, axis=0).T.astype(np.float64) for corner in rows.T]
+        corners = [columns_at(points, corner) for corner in rows.T]
         with np.errstate(invalid="ignore", over="ignore", under="ignore"):
             sides = [corners[i] - corners[i - 1] for i in range(3)]
             squares = [kernels.dot(side, side) for side in sides]
-            longest = np.maximum(np.maximum(squares[0], squares[1]), squares[2])
-            slivers.append(slivers_of(rows, squares, longest))
+            slivers.append(slivers_of(rows, squares))
     return slivers
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import functools
 import math
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +14,7 @@ from vizlight import _pool
 from vizlight._types import Array, Bools, Indices, Raw, Slice
 from vizlight.model import kernels
 from vizlight.scene import View
-from vizlight.vtk.cells import connectivity, faces, finite_points, places, triangles
+from vizlight.vtk.cells import columns_at, connectivity, faces, finite_points, places, triangles
 from vizlight.vtk.corners import SHARP, Slivers, slivers_of
 from vizlight.vtk.topology import BLOCK, SortedEdges, ends_of, sorted_edges, topology
 
@@ -173,7 +173,7 @@ class SurfaceShape:
             rows = self.triangles[block]
             self._unit[:, block], self._full[block], squares = _directions(self.points, rows)
             with np.errstate(all="ignore"):
-                self.slivers.append(slivers_of(rows, squares, np.maximum.reduce(squares)))
+                self.slivers.append(slivers_of(rows, squares))
 
     def _count(self, edges: SortedEdges) -> None:
         """Count edges of two faces, and sharp ones.
@@ -208,7 +208,7 @@ class SurfaceShape:
             for i, kind in enumerate(kinds):
                 self.edges[:, i] += np.bincount(of[kind], minlength=len(self.edges))
 
-    @cached_property
+    @functools.cached_property
     def frame(self) -> tuple[Array, float]:
         """The centroid of each piece, shape (3, n_pieces), and the size of the mesh about them."""
         piece = self.piece
@@ -225,7 +225,7 @@ class SurfaceShape:
         scalable = 0 < largest < np.inf
         return middle, math.ldexp(0.5, math.frexp(largest)[1]) if scalable else largest or 1.0
 
-    def _from_middle(self, rows: Indices | Slice, middle: Array) -> Array:
+    def _from_middle(self, rows: Slice, middle: Array) -> Array:
         """Return the ways from the centroids of the pieces to some points."""
         points = self.points[rows]
         if not self.all_finite:
@@ -234,14 +234,7 @@ class SurfaceShape:
         away -= middle[:, self.piece[rows]] if self.count > 1 else middle
         return away
 
-    def away(self, rows: Indices | Slice) -> Array:
-        """Return some points, shape (3, n), each piece about its centroid, at a size of 1."""
-        middle, largest = self.frame
-        away = self._from_middle(rows, middle)
-        away /= largest
-        return away
-
-    @cached_property
+    @functools.cached_property
     def all_finite(self) -> bool:
         """Whether all points are finite."""
         return bool(self.finite.all())
@@ -260,15 +253,15 @@ class SurfaceShape:
         piece, n = self.piece, len(self.points)
         sums = Sums.zero(self.count)
         bend, least = np.zeros(n), np.ones(n, dtype=np.float32)
-        _, largest = self.frame
+        middle, largest = self.frame
         for block in _pool.blocks(len(self.triangles), FEW):
             rows: Indices = self.triangles[block]
-            wide = self._full[block]
+            narrow = ~self._full[block]
             if not self.all_finite:
                 finite = self.finite[rows].all(axis=1)
-                rows, wide = rows[finite], wide[finite]
+                rows, narrow = rows[finite], narrow[finite]
             corners = [np.ascontiguousarray(at) for at in rows.T]
-            a, b, c = (self.points.take(at, axis=0).T.astype(np.float64) for at in corners)
+            a, b, c = (columns_at(self.points, at) for at in corners)
             u, v = b - a, c - a
             u /= largest
             v /= largest
@@ -277,16 +270,17 @@ class SurfaceShape:
             inner = slice(None)
             if self.side is not None:
                 inner = self.side[rows].min(axis=1) == 0
-            start = corners[0][inner]
-            sums.add(piece[start], self.away(start), across[:, inner], size[inner])
+            owner = piece[corners[0][inner]]
+            corner = a[:, inner] - (middle.take(owner, axis=1) if self.count > 1 else middle)
+            sums.add(owner, corner / largest, across[:, inner], size[inner])
             # Three times the way from each corner to the centre of its triangle.
             for at, inward in zip(corners, (u + v, v - 2 * u, u - 2 * v), strict=True):
-                normal = np.ascontiguousarray(normals.take(at, axis=0).T, dtype=np.float64)
+                normal = columns_at(normals, at)
                 with np.errstate(invalid="ignore"):
                     # The direction of a sliver is rounding, which must not count as a face that is
                     # averted.
                     cosine = kernels.dot(normal, unit)
-                    cosine[~wide] = 1.0
+                    cosine[narrow] = 1.0
                     np.minimum.at(least, at, cosine.astype(np.float32))
                 np.add.at(bend, at, kernels.dot(normal, inward))
         # The lean takes the place of the least cosines.
@@ -316,10 +310,11 @@ class SurfaceShape:
     def score(self, normals: Array, view: View | None) -> Array:
         """Return how far the normals of each piece agree with the directions of a sheet."""
         scores = np.zeros(self.count)
+        middle, largest = self.frame
         seen = view is not None and len(view.position or view.direction or ()) == 3
         for block in _pool.blocks(len(normals), BLOCK):
             columns = normals[block].T.astype(np.float64)
-            toward = kernels.unit(self.away(block))[0]
+            toward = kernels.unit(self._from_middle(block, middle) / largest)[0]
             if seen and view is not None:
                 toward += 3 * kernels.unit(toward_eye(view, self.points[block]))[0]
             score = kernels.dot(columns, toward)
@@ -335,12 +330,12 @@ def _directions(points: Raw, triangles: Indices) -> tuple[Array, Bools, list[Arr
 
     The first is of shape (3, n); squares are those of the sides that end at each corner.
     """
-    a, b, c = (points.take(at, axis=0).T.astype(np.float64) for at in triangles.T)
+    a, b, c = (columns_at(points, at) for at in triangles.T)
     sides = a - c, b - a, c - b
     with np.errstate(all="ignore"):
         unit, size = kernels.unit(kernels.cross(sides[1], c - a))
         squares = [kernels.dot(side, side) for side in sides]
-        return unit, size > NARROWEST * np.maximum.reduce(squares), squares
+        return unit, size > NARROWEST * functools.reduce(np.maximum, squares), squares
 
 
 def lean_of(surface: vtkPolyData, normals: Array) -> Array:
@@ -367,7 +362,7 @@ def lean_of(surface: vtkPolyData, normals: Array) -> Array:
     for block in _pool.blocks(len(rows), FEW):
         unit, is_full, _ = _directions(points, rows[block])
         for at in rows[block].T:
-            normal = np.ascontiguousarray(vectors.take(at, axis=0).T)
+            normal = columns_at(vectors, at)
             # The direction of a sliver is rounding.
             corner, cosine = at[is_full], kernels.dot(normal, unit)[is_full]
             np.minimum.at(least, corner, np.abs(cosine).astype(np.float32))
