@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+import vizlight
 from vizlight.looks.ranges import (
     Range,
     range_of_turn,
@@ -187,3 +188,12 @@ def test_the_range_is_clipped_of_noise_and_not_of_a_region(of_cells):
             return share_beyond(sheet, outside, of_cells=of_cells)
 
         assert any(with_regions(shown, values, beyond).clipped) == clipped
+
+
+def test_a_region_on_a_lit_surface_is_seen_to_its_largest_value():
+    plane = pv.Plane(i_resolution=60, j_resolution=60)
+    plane.points[:, 2] = -np.sum(plane.points[:, :2] ** 2, axis=1)
+    is_patch = np.linalg.norm(plane.points[:, :2], axis=1) < 0.12
+    plane["stress"] = np.random.default_rng(1).normal(0, 0.1, plane.n_points) + 5 * is_patch
+    look = vizlight.look(plane, "value", array="stress", size=(300, 200))
+    assert look.drawing.keys[0]["clim"][1] == pytest.approx(plane["stress"].max())

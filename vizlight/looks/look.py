@@ -709,7 +709,8 @@ def prepared(data: object, step: Step, wishes: Wishes) -> tuple[Step, Contents, 
         contents.words_on_none(), contents.words_on_rounding(), contents.words_on_complex(),
     ]  # fmt: skip
     notes += [text for text in words if text]
-    return step, contents, notes
+    # A step that is none of its own has the note of the one before it.
+    return step, contents, [*dict.fromkeys(notes)]
 
 
 def _of_stretched(mesh: pv.DataSet, factor: float) -> str:

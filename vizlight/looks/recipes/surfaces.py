@@ -95,9 +95,11 @@ def values(case: Case) -> Drawing:
     scene = case.exposed(mesh, camera, lamp, **light) if bent else case.scene(camera)
     keywords = case.wishes.colors
     note = ""
-    if bent and array.role in ("values", "heights"):
+    if bent and array.role == "values":
+        keywords, note = case.ranged_of(mesh, array, ON_SURFACES)
+    elif bent and array.role == "heights":
         rows = np.asarray(mesh.run()[array.name], dtype=np.float64)
-        keywords, note = case.ranged(rows, array.name, ON_SURFACES, lengths=False)
+        keywords, note = case.ranged(rows, array.name, ON_SURFACES)
     elif not bent and array.role == "heights":
         keywords = case.colors_of_heights
     elif not bent:
