@@ -78,6 +78,18 @@ def test_all_steps_have_the_range_of_all(warming: Path, tmp_path: Path) -> None:
     assert options["array"] == "T"
 
 
+@pytest.mark.usefixtures("few_strokes")
+def test_a_movie_of_vectors_has_the_colours_of_a_picture(tmp_path: Path) -> None:
+    sides = (41, 31, 1)
+    speeds = 0.2 + 0.1 * pv.ImageData(dimensions=sides).points[:, :1] / 40
+    speeds[:4] *= 8
+    path = _series(tmp_path, [{"U": speeds * [1.0, 0.1 * k, 0.0]} for k in range(2)], sides)
+    look = vizlight.look(path, size=SIZE)
+    colors = _options(look, tmp_path / "x.gif")["cmap"]
+    assert colors.path == "pyvista.LookupTable"
+    assert colors.arguments == look.drawing.layers[0].keywords["cmap"].arguments
+
+
 def test_the_range_of_all_steps_is_that_of_the_layer_that_is_shown(tmp_path: Path) -> None:
     x, _, z = pv.ImageData(dimensions=(9, 7, 3)).points.T
     steps = [{"T": 20.0 + k + x / 8 + 100 * (z - 2)} for k in range(3)]

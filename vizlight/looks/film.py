@@ -375,7 +375,9 @@ def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str)
     shown = shown.around_zero(every / unit) if shown.is_signed else shown
     if shown.words(array):
         if isinstance(drawn, Step):
-            drawn = ON_GROUND if shown.ground else ON_BANDS
+            # The colours of a step stay those of the movie.
+            names = [part for part in drawn.arguments if isinstance(part, str)]
+            drawn = ON_GROUND if shown.ground else [*names, ON_BANDS][0]
         return colors_in(shown, look.wishes.picture.get("cmap") or drawn, unit)
     shown = shown._replace(low=shown.low * unit, high=shown.high * unit)
     step = 10.0 ** np.floor(np.log10((shown.high - shown.low) / FINE or 1.0))

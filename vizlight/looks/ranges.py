@@ -203,7 +203,9 @@ def range_shown(
     if not step or outside > MOST_OUTSIDE or (freed < needed and not is_apart):
         top = float(np.percentile(values, BELOW_PEAKS))
         if (lengths or amounts) and high - top > FREED_BY_PEAKS * (high - low):
-            return Range(*even_ends(low, top), clipped=(False, True))
+            step = (top - low) / 10
+            ends = _rounded(low, step, np.floor), _rounded(top, step, np.ceil)
+            return Range(*ends, clipped=(False, True))
         return Range(*even_ends(low, high))
     ends = (
         _rounded(fences[0] if cut[0] else low, step, np.floor),
