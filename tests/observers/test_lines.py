@@ -15,6 +15,7 @@ from vizlight.observers.lines import (
     JUMP,
     Glyphs,
     Segments,
+    above_ground,
     ahead_of,
     along_grain,
     grain_of,
@@ -143,6 +144,30 @@ def test_vectors_of_lines_tell_the_sense():
     assert found.told > 0.9
 
 
+@pytest.mark.parametrize("against", [0, 120, 240])
+def test_widths_tell_the_sense_unless_half_of_them_run_against_it(against):
+    """Black heads on waves of light: of 24 strokes some have their heads behind."""
+    mesh = strokes(times=False)
+    points = np.asarray(mesh.points).reshape(-1, 10, 3)
+    mesh["V"] = np.repeat(points[:, -1] - points[:, 0], 10, axis=0)
+    mesh["V"][:against] *= -1
+    mesh["width"] = np.where(mesh["along"] > 0.6, 2.4 * (1.01 - mesh["along"]), 0.2)
+    ground = pv.Plane(center=(*mesh.center[:2], -0.1), i_size=8, j_size=8, i_resolution=40)
+    ground["light"] = 0.7 + 0.25 * np.sin(3 * ground.points[:, 0])
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.add_mesh(
+        ground, scalars="light", cmap="gray", clim=(0, 1), lighting=False, show_scalar_bar=False
+    )
+    plotter.vizlight.add_mesh(
+        mesh, tangents="V", color="black", width="width", line_width=12, halo=False
+    )
+    plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
+    found = plotter.vizlight.legibility(samples=64, size_mm=30).sense
+    plotter.close()
+    assert found.unreadable == (against == 120)
+    assert found.unreadable or (found.told > 0.95 and found.wrongly == 0)
+
+
 @pytest.mark.parametrize(
     ("told", "wrongly", "total", "bits"),
     [(1000, 0, 1000, 1), (500, 0, 1000, 0.5), (500, 500, 1000, 0), (100, 900, 1000, 0),
@@ -206,20 +231,15 @@ def test_the_end_ahead_of_a_stroke_is_lighter_by_its_last_third(ahead):
     )  # fmt: skip
     seen = seen_as(colors)
     # A window of a pixel: 8 arc minutes.
-    found = strokes_of(lines, seen, Eye(7.5))
+    found = strokes_of(lines, lines.shown, seen, Eye(7.5))
+    assert (found.form, found.pixels) == ([0], [270])
     # Middles of the two outer thirds are two thirds of the stroke apart.
     np.testing.assert_allclose(found.light, [20 * ahead], atol=0.01)
-    np.testing.assert_allclose(found.ink, [-20 * ahead], atol=0.01)
     short = lines._replace(number=np.full_like(number, -1))
     short.number[20, 15:17] = 0
-    assert len(strokes_of(short, seen, Eye(7.5)).ink) == 0
-    # Surroundings of 8 pixels, 4 windows of 2, have darker ground beside the last third: 16 of 40
-    # in the mean of the three rows of the stroke.
-    colors[:18, 60:, 0] -= 40
-    wide = strokes_of(lines, seen_as(colors), Eye(15))
-    np.testing.assert_allclose(wide.light, [36 * ahead], atol=0.7)
+    assert len(strokes_of(short, short.shown, seen, Eye(7.5)).light) == 0
     none = lines._replace(ahead=np.zeros(1))
-    assert len(strokes_of(none, seen, Eye(7.5)).ink) == 0
+    assert len(strokes_of(none, none.shown, seen, Eye(7.5)).light) == 0
 
 
 def test_the_round_end_of_a_stroke_belongs_to_its_end():
@@ -234,7 +254,7 @@ def test_the_round_end_of_a_stroke_belongs_to_its_end():
     )  # fmt: skip
     # The ground is as the stroke: only the step within the first third of 20 pixels is seen.
     colors[number < 0] = (0, 0, 0)
-    found = strokes_of(lines, seen_as(colors), Eye(7.5))
+    found = strokes_of(lines, lines.shown, seen_as(colors), Eye(7.5))
     np.testing.assert_allclose(found.light, [30], atol=1e-9)
 
 
@@ -343,19 +363,46 @@ def test_a_wedge_is_told_from_one_that_is_turned():
     glyphs, eye = wedge(), Eye(60.0)
     bare = glyphs.number < 0
     ink = np.where(bare, 10.0, 60.0)
+    sides = glyphs.number, glyphs.turned
     for shown, answer in ((ink, 1), (ink[::-1, ::-1], -1), (0 * ink, 0)):
-        assert ahead_of(glyphs, shown, bare, eye) == answer
+        assert ahead_of(*sides, shown, bare, eye) == answer
     # Of 72 pixels 24 are not those of both: 3 deviations of the mean of 18 would be the noise.
     assert np.count_nonzero(~bare & (glyphs.turned < 0)) == 24
     for more, answer in ((2.31, 1), (2.29, 0)):
-        assert ahead_of(glyphs, np.where(bare, 0, more), bare, eye) == answer
+        assert ahead_of(*sides, np.where(bare, 0, more), bare, eye) == answer
     # At twice as many pixels in a degree there are 6 square arc minutes.
     for more, answer in ((3.99, 1), (3.97, 0)):
-        assert ahead_of(glyphs, np.where(bare, 0, more), bare, Eye(120.0)) == answer
+        assert ahead_of(*sides, np.where(bare, 0, more), bare, Eye(120.0)) == answer
     # Without bare pixels around it a glyph has no sense; one that is not seen has no answer.
-    assert ahead_of(glyphs, ink, np.zeros_like(bare), eye) == 0
-    hidden = glyphs._replace(number=np.full_like(glyphs.number, -1))
-    assert np.isnan(ahead_of(hidden, ink, bare, eye)).all()
+    assert ahead_of(*sides, ink, np.zeros_like(bare), eye) == 0
+    hidden = np.full_like(glyphs.number, -1)
+    assert np.isnan(ahead_of(hidden, glyphs.turned, ink, bare, eye)).all()
+
+
+def test_the_side_of_a_wedge_that_is_seen_tells_it_where_a_surface_hides_the_other():
+    glyphs, eye = wedge(), Eye(60.0)
+    left = np.arange(32) < 16
+    for hides, answers in ((left, (0, -1)), (~left, (1, 0))):
+        # The wide end is to the left: as it is, or to the right if it is turned.
+        number, turned = (np.where(hides, -1, each) for each in (glyphs.number, glyphs.turned))
+        for shown, answer in zip((glyphs.number, glyphs.turned), answers, strict=True):
+            ink = np.where(hides | (shown < 0), 0.0, 60.0)
+            assert ahead_of(number, turned, ink, number < 0, eye) == answer
+
+
+def test_the_contrast_of_marks_is_that_with_the_ground_beside_them_which_may_change():
+    """Marks of 20 less than a ground that rises by 1 in 2 pixels, and has a step of 40."""
+    height, width = np.indices((60, 120))
+    ground = 30 + 0.5 * width + 40 * (width >= 60)
+    line, disc = np.abs(height - 30) <= 1, np.hypot(height - 12, width - 90) < 9
+    seen = seen_as((ground - 20 * (line | disc))[..., np.newaxis] * (1.0, 0, 0))
+    above = above_ground(seen, line | disc, Eye(60.0))[..., 0]
+    far = (np.abs(width - 60) > 12) & (width > 12) & (width < 108)
+    np.testing.assert_allclose(above[~line & ~disc & far], 0, atol=2)
+    np.testing.assert_allclose(above[line & far], -20, atol=0.5)
+    # No place of the disc is further than its radius from the ground.
+    np.testing.assert_allclose(above[disc], -20, atol=0.5 * 9 + 2)
+    assert above[disc].mean() == pytest.approx(-20, abs=0.5)
 
 
 def test_the_length_of_a_glyph_is_that_of_what_is_seen():

@@ -19,7 +19,7 @@ from vizlight.draw.cameras import camera_on
 from vizlight.observers import measure, readers
 from vizlight.observers.eye import Eye, linear
 from vizlight.observers.figures import Speed
-from vizlight.observers.lines import Segments
+from vizlight.observers.lines import Segments, Strokes
 from vizlight.observers.pixels import Pixels
 
 pytestmark = pytest.mark.opengl
@@ -271,12 +271,23 @@ def test_no_answer_that_is_not_better_than_chance_is_printed():
 
 def test_ends_of_strokes_differ_by_three_deviations_of_the_noise():
     ink = np.array([7.0] * 7 + [6.8, -7.0, 0.0])
-    answers = measure._of_strokes(ink, 0 * ink, 2.3)
-    found = measure._sense(answers)
+    none, pixels = 0 * ink, np.full(10, 5)
+    answers = measure._of_strokes(Strokes(ink, none, pixels), 2.3)
+    found = measure._sense(answers, pixels)
     assert counts(found) == (7, 1)
-    np.testing.assert_array_equal(measure._of_strokes(0 * ink, -ink, 2.3), answers)
-    assert measure._sense(answers[:7]) is None
-    assert measure._sense(answers[:8]) is not None
+    for ends in ((-ink, none), (none, answers), (none, -answers)):
+        same = measure._of_strokes(Strokes(*ends, pixels), 2.3)
+        np.testing.assert_array_equal(same, answers)
+    assert measure._sense(answers[:7], pixels[:7]) is None
+    assert measure._sense(answers[:8], pixels[:8]) is not None
+
+
+def test_a_place_on_a_long_stroke_counts_as_one_on_a_short_one():
+    answers, pixels = np.repeat([1.0, 0.0, -1.0], 10), np.repeat([90, 9, 1], 10)
+    found = measure._sense(answers, pixels)
+    assert (found.told, found.wrongly, found.samples) == pytest.approx((0.9, 0.01, 30))
+    each = measure._sense(np.repeat(answers, pixels), np.ones(1000))
+    assert (each.told, each.wrongly) == pytest.approx((found.told, found.wrongly))
 
 
 def pixels_of(part):

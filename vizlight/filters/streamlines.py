@@ -170,9 +170,9 @@ def streamlines(
     step : float, default: 0.3
         Largest step of the integration, in cell lengths.
     min_length : float, optional
-        Least length of a line, in the unit of the mesh: shorter ones are left out, and those that
-        are noise, in the mean slower than a hundredth of the fastest and turned by more than half
-        a turn over this length. The field array ``left_out`` is their number. Default: none is.
+        Least length of a line, in the unit of the mesh: shorter ones are left out. Lines are cut at
+        kinks, where they turn by more than a right angle within a seventh of this length. The field
+        array ``left_out`` is the number of lines no part of which is left. Default: none is.
     max_length : float, optional
         Largest length of a line, in the unit of the mesh. Default: four diagonals of the bounding
         box. A line ends after 1,200 cell lengths in any case.
@@ -305,12 +305,11 @@ def _as_strokes(
 ) -> pv.PolyData:
     """Return lines with ages and speeds, without short ones, and cut as the options say."""
     if options.min_length is not None:
-        count = lines.n_lines
-        lines = strokes.without_short(lines, options.min_length, _speed(lines, options))
+        lines = strokes.without_short(lines, options.min_length)
         if not lines.n_lines:
+            count = lines.field_data["left_out"][0]
             expected = f"a length that one of the {count} lines has"
             raise _check.value_error("min_length", expected, options.min_length)
-        lines.field_data["left_out"] = [count - lines.n_lines]
     speed = _speed(lines, options)
     point_arrays = {AGE: strokes.ages(lines, lines.point_data[tangents])}
     point_arrays |= {} if speed is None else {SPEED: speed}

@@ -31,8 +31,8 @@ BARE, FADE = 0.25, 0.5
 PHASE, PASSING, GROWN, WIDTH = "phase", "passing", "grown", "width"
 #: Turns by which strokes of one line are ahead of those of the line before it.
 GOLDEN = 0.6180339887
-#: Mean speed, as a share of the largest, below which a line that turns much is noise.
-SLOW = 1e-2
+#: Length within which a line has no right angle, as a share of the least length of a line.
+KINK = 1 / 7
 #: Share of the median speed below which vectors move a stroke no slower, as at the end of a line.
 SLOWEST = 1e-3
 
@@ -130,6 +130,35 @@ def ages(mesh: pv.PolyData, tangents: AnyArray) -> Array:
     return _run_through(mesh, segments, against(mesh, segments, tangents))
 
 
+def turned(mesh: pv.PolyData, values: Array) -> Array:
+    """Return values at the points of lines as if each line ran from its end to its start."""
+    segments = segments_of(mesh)
+    totals, line = segments.totals(), np.zeros(mesh.n_points, dtype=np.intp)
+    line[segments.starts] = line[segments.ends] = segments.lines
+    along = _run_through(mesh, segments, np.zeros(len(totals), dtype=np.bool_))
+    # One line after another, with as much room between two as the longest is long.
+    first = np.cumsum(totals + totals.max(initial=0.0)) - totals
+    points = np.unique([segments.starts, segments.ends])
+    place = first[line[points]] + along[points]
+    order = np.argsort(place)
+    mirrored = np.array(values, dtype=np.float64)
+    mirrored[points] = np.interp(
+        (2 * first + totals)[line[points]] - place, place[order], mirrored[points[order]]
+    )
+    return mirrored
+
+
+def leaning(mesh: pv.PolyData, values: Array) -> Array:
+    """Return 1 at the points of lines that have larger values beyond their middle, -1 before it."""
+    segments = segments_of(mesh)
+    beyond = segments.before + (segments.lengths - segments.totals()[segments.lines]) / 2
+    both = values[segments.starts] + values[segments.ends]
+    moments = np.bincount(segments.lines, segments.lengths * beyond * both)
+    leans = np.zeros(mesh.n_points)
+    leans[segments.starts] = leans[segments.ends] = np.sign(moments)[segments.lines]
+    return leans
+
+
 def _run_through(mesh: pv.PolyData, segments: LineSegments, turned: Bools) -> Array:
     """Return the length or time of lines before each point, some counted from their ends."""
     after = segments.before + segments.lengths
@@ -141,30 +170,27 @@ def _run_through(mesh: pv.PolyData, segments: LineSegments, turned: Bools) -> Ar
     return lengths
 
 
-def without_short(mesh: pv.PolyData, least: float, speed: Array | None = None) -> pv.PolyData:
-    """Return the lines of a mesh that have a length or more, and are no noise.
+def without_short(mesh: pv.PolyData, least: float) -> pv.PolyData:
+    """Return the parts of the lines of a mesh that have a length or more, and no kinks.
 
-    Noise is what is slower than a hundredth of the fastest, in the mean of a line, and turns by
-    more than half a turn over the least length.
+    At a kink a line turns by more than a right angle within a seventh of the least length: it turns
+    on the spot, as at a point of stagnation, or follows noise, and is two lines. The field array
+    ``left_out`` is the number of lines no part of which is left.
 
     Parameters
     ----------
     mesh : pyvista.PolyData
         Lines.
     least : float
-        Least length of a line.
-    speed : ndarray, shape (n_points,), optional
-        Lengths of the vectors. None: no line is noise.
+        Least length of a part.
     """
     segments = segments_of(mesh)
-    totals = segments.totals()
-    kept = totals >= least
-    if speed is not None and len(totals):
-        counts = np.bincount(segments.lines)
-        means = np.bincount(segments.lines, speed[segments.starts]) / counts
-        turns = _turns(mesh, segments)
-        kept &= (means >= SLOW * speed.max()) | (turns * least <= math.pi * totals)
-    return _rebuilt(mesh, segments, kept[segments.lines], segments.lines)
+    kinked = _turns(mesh, segments, KINK * least) > math.pi / 2
+    parts = _numbered(segments.lines, kinked)
+    kept = ~kinked & (np.bincount(parts, segments.lengths) >= least)[parts]
+    whole = _rebuilt(mesh, segments, kept, parts)
+    whole.field_data["left_out"] = [mesh.n_lines - len(np.unique(segments.lines[kept]))]
+    return whole
 
 
 def inside(mesh: pv.PolyData, border: Array, spacing: float) -> pv.PolyData:
@@ -204,14 +230,19 @@ def _numbered(lines: Indices, mark: Bools) -> Indices:
     return np.cumsum(np.any(np.diff([lines, mark], prepend=-1), axis=0))
 
 
-def _turns(mesh: pv.PolyData, segments: LineSegments) -> Array:
-    """Return the sum of the angles between the segments of each line, in radians."""
+def _turns(mesh: pv.PolyData, segments: LineSegments, within: float) -> Array:
+    """Return by how many radians each line turns within a length around each of its segments."""
     points = np.asarray(mesh.points, dtype=np.float64)
     ways, _ = kernels.unit((points[segments.ends] - points[segments.starts]).T)
     same = segments.lines[1:] == segments.lines[:-1]
     angles = np.arccos(np.clip(kernels.dot(ways[:, 1:], ways[:, :-1]), -1, 1))
-    sums = np.bincount(segments.lines[1:][same], angles[same], len(segments.totals()))
-    return sums.astype(np.float64, copy=False)
+    turned_by = np.cumsum(np.append(0.0, np.where(same, angles, 0.0)))
+    # One line after another, with room between them.
+    first = (segments.totals() + within).cumsum()[segments.lines]
+    joint = first + segments.before - segments.totals()[segments.lines]
+    middle = joint + segments.lengths / 2
+    low, high = (np.searchsorted(joint[1:], middle + side * within / 2) for side in (-1, 1))
+    return np.asarray(turned_by[high] - turned_by[low])
 
 
 def cut(mesh: pv.PolyData, length: float, tangents: str, arrow: Arrow | None) -> pv.PolyData:

@@ -227,9 +227,9 @@ class Order(TwoSided):
 class Sense(TwoSided):
     """Which of two opposite ways a stroke or a glyph runs, told by its form or lightness along it.
 
-    Places are strokes and glyphs. Of all strokes a reader takes the same end to be ahead, the
-    wider, the narrower, the lighter or the darker one, whichever is right more often. The form of
-    glyphs is known.
+    Places are those on strokes and glyphs, which ``samples`` counts. Of all strokes a reader takes
+    the same end to be ahead, the wider, the narrower, the lighter or the darker one, whichever is
+    right more often. The form of glyphs is known.
     """
 
 

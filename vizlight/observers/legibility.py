@@ -181,10 +181,10 @@ def legibility(
     (Rose 1948), on both sides and by more than those of the other; crossings with a third line
     within 5.5 pixels are left out. Of two narrow lines of 3 pixels on black without halos the
     darker one is read as the nearer. *sense*: a reader sees which end of a stroke is ahead where
-    its ends differ by 3 deviations of the noise, in lightness or in contrast, each as the mean of 8
-    arc minutes. It needs lines that have ``tangents``, or VTK's ``IntegrationTime``. For a glyph,
-    the pixels that it covers are compared with those that it would cover if it were turned round:
-    the sense is right where the former stand out more.
+    its outer thirds differ by 3 deviations of the noise in lightness. It needs lines that have
+    ``tangents``, or VTK's ``IntegrationTime``. For a glyph, and for a stroke that has widths, the
+    pixels that it covers are compared with those that it would cover if it were turned round: the
+    sense is right where the former stand out more. Each counts by the pixels that show it.
 
     A reader of a surface with lines on it looks between them, as far as 10 arc minutes away. Of a
     large surface normals are computed near the places that are read, and ``feature_angle="auto"``

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.ndimage import gaussian_filter, uniform_filter
+from scipy.ndimage import distance_transform_edt, gaussian_filter
 
 from vizlight import _pool
 from vizlight.model.kernels import unit_rows
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     import pyvista as pv
+    from vtkmodules.vtkRenderingCore import vtkActor
 
     from vizlight._types import Array, Bools, Indices
     from vizlight.observers.eye import Eye, SeenPicture
@@ -29,9 +30,8 @@ if TYPE_CHECKING:
 SEEN = 3.0
 #: Distance in pixels, in ``Segments.along``, between different lines, so that no two are near.
 JUMP = 1e6
-#: Width in arc minutes of the window in which a reader sees how much of a stroke there is, and
-#: width of the one in which what is around it is seen, in widths of the first.
-WINDOW, AROUND = 8.0, 4
+#: Width in arc minutes of the window in which a reader sees a mark and the ground beside it.
+WINDOW = 8.0
 #: Number of channels of marks, fine and coarse.
 CHANNELS = 2
 #: Least number of pixels of both ends of a stroke whose sense is read.
@@ -59,6 +59,8 @@ class Segments(NamedTuple):
         1 where the sense of the data is that of the segment, -1 against it, 0 without a sense.
     course : AllSegments or None
         All segments of the lines, if these are those that are seen.
+    lean : ndarray, shape (S,), or None
+        1 where lines are wider ahead of their middle, as the segment runs, -1 behind it, else 0.
     """
 
     number: Indices
@@ -69,6 +71,12 @@ class Segments(NamedTuple):
     width: Array
     ahead: Array
     course: AllSegments | None = None
+    lean: Array | None = None
+
+    @property
+    def shown(self) -> Indices:
+        """Line that each pixel shows, -1 without one, shape (H, W)."""
+        return np.where(self.number >= 0, self.line[self.number], -1)
 
     def ways_at(self, along: Array) -> Array:
         """Return the vectors of the segments at places along the lines, also of hidden ones."""
@@ -102,6 +110,7 @@ def segments_of(parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera) ->
     number = np.full((height, width), -1, dtype=np.intp)
     widths: list[Array] = []
     ahead: list[Array] = []
+    lean: list[Array] = []
     seen: dict[int, Indices] = {}
     count = 0
     for i, part in enumerate(parts):
@@ -111,6 +120,7 @@ def segments_of(parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera) ->
             number[pixels.row[shows], pixels.column[shows]] = count + which
             widths.append(part.drawn.widths(seen[i], camera, height))
             ahead.append(part.ahead(seen[i]))
+            lean.append(part.lean(seen[i]))
             count += len(seen[i])
     if not seen:
         return None
@@ -118,7 +128,9 @@ def segments_of(parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera) ->
     columns = zip(*course.rows(seen), strict=True)
     start, way, along, line = (np.concatenate(column) for column in columns)
     width_of, sense = np.concatenate(widths), np.concatenate(ahead)
-    return Segments(number, start, way, along, line, width_of, sense, course)
+    return Segments(
+        number, start, way, along, line, width_of, sense, course, np.concatenate(lean)
+    )  # fmt: skip
 
 
 class _Rows(NamedTuple):
@@ -205,22 +217,51 @@ class Strokes(NamedTuple):
 
     Attributes
     ----------
-    ink, light : ndarray, shape (N,)
-        Contrast with the surroundings and lightness above them, in CIELAB: the end of a stroke
-        that is ahead less the other end, each as the mean of a window of 8 arc minutes.
+    light : ndarray, shape (N,)
+        Lightness above the ground, in CIELAB: the end of a stroke that is ahead less the other.
+    form : ndarray, shape (N,)
+        Sense by the widths of the stroke, :func:`ahead_of`.
+    pixels : ndarray of int, shape (N,)
+        Number of pixels that show the stroke.
     """
 
-    ink: Array
     light: Array
+    form: Array
+    pixels: Indices
 
 
-def strokes_of(lines: Segments, seen: SeenPicture, eye: Eye) -> Strokes:
+def turned_lines(
+    parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera, occluders: Sequence[vtkActor]
+) -> Indices:
+    """Return the line that each pixel would show if the widths of lines ran the other way.
+
+    Parameters
+    ----------
+    parts, pixels, camera
+        As for :func:`segments_of`, of parts with lines.
+    occluders : sequence of vtkActor
+        Actors that hide the meshes.
+
+    Returns
+    -------
+    ndarray of int, shape (H, W)
+        Numbers of the lines as in ``Segments.shown``.
+    """
+    if any(part.shares is not None for part in parts):
+        pixels = visible([part.turned for part in parts], camera, pixels.size, occluders)
+    lines = segments_of(parts, pixels, camera)
+    return np.full(pixels.size[::-1], -1) if lines is None else lines.shown
+
+
+def strokes_of(lines: Segments, turned: Indices, seen: SeenPicture, eye: Eye) -> Strokes:
     """Return how the third ahead differs from the third behind, of each stroke that is seen.
 
     Parameters
     ----------
     lines : Segments
         Lines of the picture.
+    turned : ndarray of int, shape (H, W)
+        Lines as if their widths ran the other way, :func:`turned_lines`.
     seen : SeenPicture
         The picture as the eye sees it.
     eye : Eye
@@ -238,19 +279,28 @@ def strokes_of(lines: Segments, seen: SeenPicture, eye: Eye) -> Strokes:
     at = (along - low[line]) / np.maximum(high - low, 1e-9)[line]
     sign = np.sign(np.bincount(line, lines.ahead[segment], len(names)))
     at = np.where(sign[line] < 0, 1 - at, at)
-    above = above_ground(seen, lines.number >= 0, eye)
-    ink = uniform_filter(np.linalg.norm(above, axis=2), _window(eye), mode="nearest")
-    values = np.column_stack([ink[row, column], above[row, column, 0]])
+    bare = lines.number < 0
+    # Ground is where no mark would be either if it were turned.
+    above = above_ground(seen, ~bare | (turned >= 0), eye)
+    form = np.zeros(len(names))
+    if lines.lean is not None:
+        ink = np.linalg.norm(above, axis=2)
+        lean = np.bincount(line, (lines.ahead * lines.lean)[segment], len(names))
+        form = np.sign(lean) * ahead_of(lines.shown, turned, ink, bare, eye)[names]
+    light = above[row, column, :1]
     first, last = at < 1 / 3, at > 2 / 3
     enough = np.ones(len(names), dtype=np.bool_)
     for third in (first, last):
         enough &= np.bincount(line[third], minlength=len(names)) >= END
-    behind, ahead = (means(values[third], line[third], len(names)) for third in (first, last))
-    return Strokes(*(ahead - behind)[enough].T)
+    behind, ahead = (means(light[third], line[third], len(names)) for third in (first, last))
+    return Strokes((ahead - behind)[enough, 0], form[enough], np.bincount(line)[enough])
 
 
 def above_ground(seen: SeenPicture, covered: Bools, eye: Eye) -> Array:
-    """Return how colours differ from the bare ground around them.
+    """Return how colours differ from the bare ground beside them.
+
+    It is the mean of a Gaussian of the variance of the window, so that a ground of changing
+    colours is none of its marks.
 
     Parameters
     ----------
@@ -266,16 +316,17 @@ def above_ground(seen: SeenPicture, covered: Bools, eye: Eye) -> Array:
     ndarray, shape (H, W, 3)
         Differences in CIELAB.
     """
-    bare = ~covered[..., np.newaxis] * 1.0
-    around = (AROUND * _window(eye), AROUND * _window(eye), 1)
-    share = uniform_filter(bare, around, mode="nearest")
-    ground = uniform_filter(bare * seen.colors, around, mode="nearest") / np.maximum(share, 1e-3)
-    return np.asarray(seen.colors - ground)
+    spread, bare = _window(eye) / math.sqrt(12), ~covered * 1.0
+    colors = gaussian_filter(bare[..., np.newaxis] * seen.colors, (spread, spread, 0.0))
+    ground = colors / np.maximum(gaussian_filter(bare, spread), 1e-9)[..., np.newaxis]
+    # The middle of a wide mark is far from the ground.
+    row, column = distance_transform_edt(covered, return_distances=False, return_indices=True)
+    return np.asarray(seen.colors - ground[row, column])
 
 
-def _window(eye: Eye) -> int:
-    """Return the width in pixels of the window of a reader."""
-    return max(1, round(WINDOW / 60 * eye.pixels_per_degree))
+def _window(eye: Eye) -> float:
+    """Return the width in pixels of the window of a reader, 1 at least."""
+    return max(1.0, WINDOW / 60 * eye.pixels_per_degree)
 
 
 def grain_of(seen: SeenPicture, eye: Eye, seed: int) -> Array:
@@ -303,7 +354,7 @@ def grain_of(seen: SeenPicture, eye: Eye, seed: int) -> Array:
     random = np.random.default_rng(seed)
     noisy = seen.colors + random.normal(0.0, eye.noise, seen.colors.shape)
     # A Gaussian of the variance of the window.
-    spread = WINDOW / 60 * eye.pixels_per_degree / math.sqrt(12)
+    spread = _window(eye) / math.sqrt(12)
     # Derivatives of Gaussians are alike in all directions, unlike differences of pixels.
     orders = (1, 0, 0), (0, 1, 0)
     shading = [gaussian_filter(noisy, (spread, spread, 0.0), order) for order in orders]
@@ -407,43 +458,52 @@ def _numbered(pixels: Pixels, numbers: list[Indices]) -> Indices:
     return shown
 
 
-def ahead_of(glyphs: Glyphs, ink: Array, bare: Bools, eye: Eye) -> Array:
-    """Return whether glyphs look as they are or as if turned round, by the pixels that differ.
+def ahead_of(
+    number: Indices, turned: Indices, ink: Array, bare: Bools, eye: Eye
+) -> Array:  # fmt: skip
+    """Return whether marks look as they are or as if turned round, by the pixels that differ.
 
-    This is the contrast of the pixels that a glyph has and would not have if it were turned, less
+    This is the contrast of the pixels that a mark has and would not have if it were turned, less
     that of the bare pixels that it would have then. It is seen if it is the noise of the eye at
-    least, and 3 deviations of the means over as many square arc minutes (Rose 1948).
+    least, and 3 deviations of the means over as many square arc minutes (Rose 1948). Where a
+    surface hides all of one side, the other one is compared with half of the contrast of the mark.
 
     Parameters
     ----------
-    glyphs : Glyphs
-        Glyphs of the picture.
+    number, turned : ndarray of int, shape (H, W)
+        Mark that each pixel shows, and would show if each were turned round; -1 without one.
     ink : ndarray, shape (H, W)
         Contrast with the surroundings.
     bare : ndarray of bool, shape (H, W)
-        Pixels without glyphs and lines.
+        Pixels without marks.
     eye : Eye
         Eye.
 
     Returns
     -------
     ndarray, shape (G,)
-        1 as they are, -1 turned, 0 for neither, and NaN for glyphs without a pixel.
+        1 as they are, -1 turned, 0 for neither, and NaN for marks without a pixel.
     """
-    count = len(glyphs.way)
-    apart = glyphs.number != glyphs.turned
-    sides = []
-    for number, there in ((glyphs.number, apart), (glyphs.turned, apart & bare)):
-        there = there & (number >= 0)
-        mean = means(ink[there][:, np.newaxis], number[there], count)[:, 0]
-        sides.append((mean, np.bincount(number[there], minlength=count)))
-    (as_it_is, pixels), (round_about, others) = sides
-    minutes = np.minimum(pixels, others) / (eye.pixels_per_degree / 60) ** 2
+    count = 1 + int(max(number.max(), turned.max()))
+
+    def seen_in(marks: Indices, there: Bools) -> tuple[Array, Indices]:
+        there = there & (marks >= 0)
+        mean = means(ink[there][:, np.newaxis], marks[there], count)[:, 0]
+        return mean, np.bincount(marks[there], minlength=count)
+
+    apart = number != turned
+    half = seen_in(number, ~apart)[0] / 2
+    as_it_is, pixels = seen_in(number, apart)
+    round_about, others = seen_in(turned, apart & bare)
+    without, hidden = pixels == 0, seen_in(turned, apart)[1] == 0
+    more = np.where(without, half, as_it_is) - np.where(hidden, half, round_about)
+    fewest = np.where(without, others, np.where(hidden, pixels, np.minimum(pixels, others)))
+    minutes = fewest / (eye.pixels_per_degree / 60) ** 2
     least = eye.noise * np.maximum(1.0, SEEN * np.sqrt(2 / np.maximum(minutes, 1e-3)))
-    more = as_it_is - round_about
-    answer = np.sign(more) * (np.abs(more) >= least) * (minutes > 0)
-    shown = np.bincount(glyphs.number[glyphs.number >= 0], minlength=count) > 0
-    return np.where(shown, answer, np.nan)
+    # What stands out is not what is hidden.
+    tells = (np.abs(more) >= least) & (minutes > 0) & ~np.where(more > 0, without, hidden)
+    shown = np.bincount(number[number >= 0], minlength=count) > 0
+    return np.where(shown, np.sign(more) * tells, np.nan)
 
 
 def lengths_of(glyphs: Glyphs, ink: Array, least: float) -> Array:
@@ -465,7 +525,7 @@ def lengths_of(glyphs: Glyphs, ink: Array, least: float) -> Array:
     return np.maximum(lengths, 0.0)
 
 
-def two_sides(right: int, wrong: int, total: int) -> float:
+def two_sides(right: float, wrong: float, total: int) -> float:
     """Return the bits that answers give of a question of two sides.
 
     It is the information of a channel that is silent at some places and wrong at others,
@@ -474,8 +534,8 @@ def two_sides(right: int, wrong: int, total: int) -> float:
 
     Parameters
     ----------
-    right, wrong : int
-        Numbers of right and of wrong answers.
+    right, wrong : float
+        Numbers of right and of wrong answers, or sums of their weights, whose mean is 1.
     total : int
         Number of places, at least 1.
     """

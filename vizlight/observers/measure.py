@@ -41,6 +41,7 @@ from vizlight.observers.lines import (
     lengths_of,
     segments_of,
     strokes_of,
+    turned_lines,
     two_sides,
 )
 from vizlight.observers.pixels import Pixels, courses, visible
@@ -55,7 +56,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Array, Bools, Indices, Keywords, Vector
     from vizlight.observers.eye import SeenPicture
-    from vizlight.observers.lines import Glyphs, Segments
+    from vizlight.observers.lines import Glyphs, Segments, Strokes
     from vizlight.observers.readers import Colors, Reading
     from vizlight.observers.samples import Sample, SeenMesh
 
@@ -204,7 +205,7 @@ def measure(
     number[pixels.row, pixels.column] = np.arange(len(pixels.row))
     lines, glyphs = segments_of(parts, pixels, camera), glyphs_of(parts, pixels, camera)
     seen = eye.look(picture, number >= 0)
-    ahead, lengths = _of_glyphs(glyphs, lines, seen, eye)
+    ahead, areas, lengths = _of_glyphs(glyphs, lines, seen, eye)
     thing = _things(pixels, parts, lines, glyphs, eye)
     random = np.random.default_rng(seed)
     has_marks = any(part.by_form and part.has_tangents for part in parts)
@@ -223,14 +224,16 @@ def measure(
     reader = _PictureReader(groups, seed, eye, list(notes))
     figures = reader.figures()
     answers = ahead[np.isfinite(ahead)]
+    weights = areas[np.isfinite(ahead)]
     if lines is not None:
         at_crossings = crossings.crossings_of(lines, samples, np.random.default_rng(seed))
         figures["order"] = _order(crossings.answers(at_crossings, lines, seen, noise))
         if figures["order"] is None:
             reader.notes.append(_without_order(at_crossings.left_out))
-        strokes = _of_strokes(*strokes_of(lines, seen, eye), noise)
-        answers = np.concatenate([answers, strokes])
-    figures["sense"] = _sense(answers)
+        strokes = strokes_of(lines, turned_lines(parts, pixels, camera, occluders), seen, eye)
+        answers = np.concatenate([answers, _of_strokes(strokes, noise)])
+        weights = np.concatenate([weights, strokes.pixels])
+    figures["sense"] = _sense(answers, weights)
     return Legibility(
         **figures,
         scale=reader.scale,
@@ -326,15 +329,18 @@ def _things(
 
 def _of_glyphs(
     glyphs: Glyphs | None, lines: Segments | None, seen: SeenPicture, eye: Eye
-) -> tuple[Array, Array]:
-    """Return the senses that glyphs tell, :func:`ahead_of`, and their lengths in pixels."""
+) -> tuple[Array, Array, Array]:
+    """Return the senses that glyphs tell, their numbers of pixels, and their lengths in pixels."""
     if glyphs is None:
-        return np.zeros(0), np.zeros(0)
+        return np.zeros(0), np.zeros(0), np.zeros(0)
     covered = glyphs.number >= 0
     if lines is not None:
         covered |= lines.number >= 0
-    ink = np.linalg.norm(above_ground(seen, covered, eye), axis=2)
-    return ahead_of(glyphs, ink, ~covered, eye), lengths_of(glyphs, ink, SEEN * eye.noise)
+    # Ground is where no glyph would be either if it were turned.
+    ink = np.linalg.norm(above_ground(seen, covered | (glyphs.turned >= 0), eye), axis=2)
+    ahead = ahead_of(glyphs.number, glyphs.turned, ink, ~covered, eye)
+    pixels = np.bincount(glyphs.number[glyphs.number >= 0], minlength=len(ahead))
+    return ahead, pixels.astype(np.float64), lengths_of(glyphs, ink, SEEN * eye.noise)
 
 
 def _between(
@@ -393,26 +399,27 @@ def _without_order(left_out: int) -> str:
     )
 
 
-def _of_strokes(ink: Array, light: Array, noise: float) -> Array:
-    """Return answers of sense by the differences of both ends of strokes: by ink or by light."""
+def _of_strokes(strokes: Strokes, noise: float) -> Array:
+    """Return answers of sense by the lightness of both ends of strokes, or by their form."""
     answers = []
-    for difference in (ink, light):
+    for difference in (strokes.light, SEEN * noise * strokes.form):
         answer = np.sign(difference) * (np.abs(difference) >= SEEN * noise)
         # By the key or by some places a reader knows which end is which.
-        answers.append(-answer if answer.sum() < 0 else answer)
-    return max(answers, key=lambda answer: float(answer.sum()))
+        answers.append(-answer if (answer * strokes.pixels).sum() < 0 else answer)
+    return max(answers, key=lambda answer: float((answer * strokes.pixels).sum()))
 
 
-def _sense(answers: Array) -> Sense | None:
+def _sense(answers: Array, pixels: Array) -> Sense | None:
     """Return the figure of answers of strokes and glyphs: 1 is right, -1 wrong, 0 none."""
     if len(answers) < STROKES:
         return None
-    return Sense(**_two_sided(answers, "draw strokes that are tapered or have heads"))
+    remedy = "draw strokes that are tapered or have heads"
+    return Sense(**_two_sided(answers, remedy, pixels / pixels.mean()))
 
 
-def _two_sided(answers: Array, remedy: str) -> Keywords:
+def _two_sided(answers: Array, remedy: str, weights: Array | float = 1.0) -> Keywords:
     """Return the figures of answers of two sides; where they are chance the reason has counts."""
-    right, wrong = int(np.count_nonzero(answers > 0)), int(np.count_nonzero(answers < 0))
+    right, wrong = (float(((sign * answers > 0) * weights).sum()) for sign in (1, -1))
     bits = two_sides(right, wrong, len(answers))
     common = {"bits": bits, "samples": len(answers)}
     if bits >= FLOOR:
@@ -420,7 +427,7 @@ def _two_sided(answers: Array, remedy: str) -> Keywords:
         return common | {"told": told, "wrongly": wrongly, "readable": told - wrongly}
     silent = right + wrong < len(answers) / 2
     why = "most places look alike on both sides" if silent else "too many places tell it wrongly"
-    reason = f"{why}, {right} right and {wrong} wrong of {len(answers)}; {remedy}"
+    reason = f"{why}, {right:.0f} right and {wrong:.0f} wrong of {len(answers)}; {remedy}"
     shares = dict.fromkeys(("told", "wrongly"), TwoSided.chance)
     return common | shares | {"readable": 0.0, "reason": reason}
 

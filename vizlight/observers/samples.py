@@ -16,7 +16,7 @@ from vizlight.draw.cameras import VIEW_ANGLE, camera_on
 from vizlight.filters.lighting import part_of
 from vizlight.filters.streamlines import TANGENTS, speed_of
 from vizlight.geometry.lines.simplices import Columns
-from vizlight.mesh import subdivision
+from vizlight.mesh import strokes, subdivision
 from vizlight.model.frames import orthonormalize
 from vizlight.model.kernels import length_rows, unit_rows
 from vizlight.observers.near import around_points, near, near_points, stars, tangents_at
@@ -291,6 +291,19 @@ class SeenMesh:
         """Points and cells to draw."""
         points = _moved_points(points_of(self.mesh, None), self.matrix)
         return Cells(points, self.cells, self.width, self.diameter, self.shares)
+
+    @property
+    def turned(self) -> Cells:
+        """Points and cells to draw, with the widths of lines from their ends to their starts."""
+        if self.shares is None or not isinstance(self.mesh, pv.PolyData):
+            return self.drawn
+        return self.drawn._replace(shares=strokes.turned(self.mesh, self.shares))
+
+    def lean(self, cells: Indices) -> Array:
+        """Return 1 for segments of lines that are wider ahead of their middle, -1 behind it."""
+        if self.shares is None or not isinstance(self.mesh, pv.PolyData):
+            return np.zeros(len(cells))
+        return strokes.leaning(self.mesh, self.shares)[self.cells[cells][:, 0]]
 
     def ahead(self, cells: Indices) -> Array:
         """Return whether segments run with the data, by their vectors or by the time along them.

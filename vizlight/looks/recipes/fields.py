@@ -326,7 +326,7 @@ def flow(case: Case) -> Drawing:
     if left_out := _left_out(lit):
         least = f"{lit.keywords['min_length']:g}"
         notes += [
-            f"lines shorter than {least}, four times their distance, or slow and tangled are left "
+            f"lines without a part of {least}, four times their distance, free of kinks are left "
             f"out: {left_out}"
         ]
     layers = [lines]
