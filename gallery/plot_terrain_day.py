@@ -48,7 +48,7 @@ scale = pv.Box((east - 3000, east, south - 500, south - 300, 0, 1))
 plotter.subplot(0, 0)
 plotter.add_mesh(scale, color="black", lighting=False)
 plotter.add_point_labels(
-    [(east - 4000, south - 400, 0)], ["3 km"], shape=None, show_points=False,
+    [(east - 4700, south - 400, 0)], ["3 km"], shape=None, show_points=False,
     text_color="black", font_size=20, justification_vertical="center", always_visible=True,
 )  # fmt: skip
 plotter.show()
