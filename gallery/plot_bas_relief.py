@@ -18,23 +18,23 @@ from vizlight import Light, Material, Scene, render
 
 dog = vizlight.load_example("dog.vtp")
 view = {"direction": (0.2, -1, 0.12), "up": (0, 0, 1)}
-relief = vizlight.bas_relief(dog, resolution=1000, height=0.06, margin=0.1, **view)
+relief = vizlight.bas_relief(dog, resolution=3000, height=0.06, margin=0.1, **view)
 # A cast has no edges as sharp as a step of the depth map.
-relief = relief.gaussian_smooth(scalars="height", std_dev=3)
+relief = relief.gaussian_smooth(scalars="height", std_dev=10).resample(1 / 3)
 plaster = Material(ambient=0.08, diffuse=0.85, specular=0.0, color=(1.0, 0.9, 0.76))
 panels = []
 for side, x, depth in (
-    ("left", -0.9, 0.005), ("right", 0.9, 0.005), ("left", -0.9, 0.02), ("left", -0.9, 0.04),
+    ("left", -0.9, 0.005), ("right", 0.9, 0.005), ("left", -0.9, 0.01), ("left", -0.9, 0.02),
 ):  # fmt: skip
-    scene = Scene(lights=Light(position=(x, 0.8, 0.8)), material=plaster)
+    scene = Scene(lights=Light(position=(x, 0.8, 1.0)), material=plaster)
     lit = vizlight.relief_shadow(relief, scene, depth=depth, lit=True)
     panels.append(render.Panel(lit, "rgb", f"lamp at the {side}, depth d = {depth}"))
 
 plotter = render.make_plotter(
     panels,
-    camera=render.camera_on(relief, (0, 0, 1), parallel=True, aspect=1.28, zoom=0.91),
+    camera=render.camera_on(relief, (0, 0, 1), parallel=True, aspect=1.2, zoom=0.96),
     rows=2,
-    size=(1640, 1280),
+    size=(1640, 1370),
     background="white",
 )
 plotter.show()

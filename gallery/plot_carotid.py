@@ -19,13 +19,14 @@ scan["speed"] = np.linalg.norm(scan["velocity"], axis=1)
 seeds = scan.points[(scan["brightness"] > 200) & (scan["speed"] > 2)][::15]
 blood = streamlines(scan, tangents="velocity", seeds=seeds, max_length=80)
 blood = blood.clip_scalar(scalars="brightness", value=150, invert=False)
-blood = blood.remove_cells(blood.compute_cell_sizes()["Length"] < 15)
+blood = blood.clip_scalar(scalars="speed", value=0.5, invert=False)
+blood = blood.remove_cells(blood.compute_cell_sizes()["Length"] < 18)
 vessel = scan.contour([145], scalars="brightness").connectivity("specified", region_ids=[0, 1])
 vessel = vessel.smooth_taubin(n_iter=40, pass_band=0.05).subdivide(2, "loop").compute_normals()
 plotter = pv.Plotter(off_screen=True, window_size=(1500, 1000))
 plotter.camera = render.camera_on((8, 76, 2, 46, 0, 44), (1, -0.9, 0.25), aspect=1.5, zoom=1.7)
-eye = -np.array(plotter.camera.direction)
-rim = 1 - np.abs(np.asarray(vessel["Normals"]) @ eye)  # 1 where the wall is seen edge-on
+# 1 where the wall is seen edge-on.
+rim = 1 - np.abs(np.asarray(vessel["Normals"]) @ plotter.camera.direction)
 vessel["glass"] = (rim[:, np.newaxis] ** 3 * [0, 0, 0, 150] + [205, 228, 255, 6]).astype("u1")
 
 plotter.set_background("#14181d")

@@ -19,13 +19,13 @@ from vizlight.model import brightness
 
 # A curve that is wound on the torus.
 curve = manifolds.parametric(
-    lambda t: [f(w * t) * r for w, r in ((1, 1.5), (81 / 40, 0.75)) for f in (np.cos, np.sin)],
-    [(0, 80 * np.pi)], 4, resolution=64 * 192,
+    lambda t: [f(w * t) * r for w, r in ((1, 1.5), (51 / 25, 0.75)) for f in (np.cos, np.sin)],
+    [(0, 50 * np.pi)], 4, resolution=64 * 120,
 )  # fmt: skip
 shapes, far = {1: curve, 2: manifolds.torus(1.5, 0.75, resolution=192)}, {"distance": 1.6771}
 matte = Material(ambient=0.0, diffuse=1.0, specular=0.0, color="white")
 # The torus below the curves has the colour of the ground, so that their brightness can be compared.
-below, ground = vizlight.manifold(shapes[2], **far), "#14181d"
+below, ground = vizlight.manifold(shapes[2], **far), "#2f4664"
 below["rgb"] = np.tile(pv.Color(ground).float_rgb, (below.n_points, 1))
 panels = []
 for exponent in (1, "compensated"):
@@ -37,6 +37,6 @@ for exponent in (1, "compensated"):
         title += f"mean {mean:.2f}, contrast {mesh['luminance'].std() / mean:.2f}"
         panels.append(render.Panel(mesh if k == 2 else pv.MultiBlock([below, mesh]), "rgb", title))
 camera = render.camera_on((*below.bounds[:5], below.bounds[5] + 0.7), (0.25, -1, 0.85), zoom=1.38)
-look = {"rows": 2, "size": (1800, 840), "background": ground, "line_diameter": 0.03, "halo": 0.3}
+look = {"rows": 2, "size": (1800, 840), "background": ground, "line_diameter": 0.045, "halo": 0.3}
 plotter = render.make_plotter(panels, camera=camera, **look)
 plotter.show()

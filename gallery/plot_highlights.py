@@ -21,7 +21,7 @@ from vizlight.model import highlights
 def shiny(mesh, degrees, model, power):
     """Return a mesh with the highlight of a lamp so far from the eye, which is above it."""
     angle = np.radians(degrees)
-    paint = Material(ambient=0.3, diffuse=0.3, specular=0.5, shininess=power, color="#5a94e6")
+    paint = Material(ambient=0.25, diffuse=0.3, specular=0.45, shininess=power, color="#5a94e6")
     lamp = Light(direction=(-np.sin(angle), 0, np.cos(angle)))
     scene = Scene(lights=lamp, view=View(direction=(0, 0, 1)), material=paint)
     return vizlight.illuminate(mesh, scene, model=model)
@@ -31,17 +31,17 @@ def show(solids, bounds, labels, size):
     """Draw solids from above, with labels centred at their places."""
     camera = render.camera_on(bounds, (0, 0, 1), parallel=True)
     camera.parallel_scale = (bounds[3] - bounds[2]) / 2
-    look = {"background": "#14181d", "light": "points", "size": size}
+    look = {"background": "#3a424c", "light": "points", "size": size, "anti_aliasing": "ssaa"}
     plotter = render.make_plotter(render.Panel(solids, "rgb"), camera=camera, **look)
     plotter.add_point_labels(
         np.array([(x, y, 1) for x, y, _ in labels]), [text for *_, text in labels],
-        always_visible=True, text_color="white", font_size=22, bold=False, shape=None,
+        always_visible=True, text_color="white", font_size=26, bold=False, shape=None,
         show_points=False, justification_horizontal="center", justification_vertical="center",
     )  # fmt: skip
     plotter.show()
 
 
-ball = pv.Sphere(radius=1, theta_resolution=180, phi_resolution=180)
+ball = pv.Sphere(radius=1, theta_resolution=400, phi_resolution=400)
 ball["Normals"] = np.array(ball.points)
 ball.point_data.active_normals_name = "Normals"
 rows = {"Phong, power 8": None, **{f"Blinn, power {8 * f}": f for f in (1, 2, 4, 6)}}
@@ -70,9 +70,9 @@ rod = pv.Cylinder(radius=0.5, height=1.9, direction=(0, 1, 0), resolution=200, c
 shapes = cap.rotate_x(-35), rod.compute_normals(split_vertices=False).rotate_x(8), ball
 solids, labels = pv.MultiBlock(), []
 for left, model, factor in ((0, "phong", 1), (8, "blinn", 4)):
-    labels += [(left + 2.2, 1.45, model.title()), (left - 1.6, 1.45, "power")]
+    labels.append((left + 2.2, 1.45, model.title()))
     for row, power in enumerate((4, 8, 16, 32)):
-        labels.append((left - 1.6, -2.2 * row, f"{factor * power}"))
+        labels.append((left - 1.7, -2.2 * row, f"power\n{factor * power}"))
         for column, shape in enumerate(shapes):
             lit = shiny(shape, 45, model, factor * power)
             solids.append(lit.translate((left + 2.2 * column, -2.2 * row, 0)))
@@ -91,11 +91,15 @@ lamp, eye = np.array([-1.0, 0, 0]), np.array([0.0, 0, 1])
 mirror = 2 * normals @ lamp * normals[..., 2] - lamp @ eye
 half = normals @ (lamp + eye) / np.linalg.norm(lamp + eye)
 error = 255 * (np.maximum(mirror, 0) ** 10 - np.maximum(half, 0) ** 40)
-figure, axes = plt.subplots(figsize=(6.4, 6.4), layout="constrained")
-levels, places = np.arange(8, 65, 8), (*np.degrees([phi, theta]), error)
-axes.contourf(*places, levels=levels, cmap="Reds")
-axes.clabel(axes.contour(*places, levels=levels, colors="k", linewidths=0.7), fontsize=9)
-axes.set(xlabel="phi of the normal, degrees", ylabel="theta of the normal, degrees")
-axes.set(aspect="equal", xlim=(0, 90), ylim=(45, 135), xticks=range(0, 91, 15))
-axes.set_title("Phong, power 10, less Blinn, power 40, in steps of 255\nlamp 90° from the eye")
+figure, axes = plt.subplots(figsize=(9, 5), layout="constrained")
+drawn = axes.contourf(*np.degrees([theta, phi]), error, levels=np.arange(8, 65, 8), cmap="Reds")
+bar = figure.colorbar(drawn, shrink=0.8, aspect=16)
+bar.set_label("difference, 1/255 of white", fontsize=15, labelpad=10)
+axes.set_xlabel("theta of the normal, degrees", fontsize=15)
+axes.set_ylabel("phi of the normal, degrees", fontsize=15)
+axes.set(aspect="equal", xlim=(54, 126), ylim=(24, 66))
+axes.set(xticks=range(60, 121, 15), yticks=range(30, 61, 15))
+axes.set_title("Phong, power 10, less Blinn, power 40: lamp 90° from the eye", fontsize=15)
+for each in (axes, bar.ax):
+    each.tick_params(labelsize=13)
 plt.show()

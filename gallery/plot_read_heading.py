@@ -16,12 +16,12 @@ from vizlight import Material, presets, render
 
 fibres = vizlight.load_example("fibre_bundle.vtp")
 
-scene = presets.heading().replace(material=Material(ambient=0.15, diffuse=0.85, specular=0))
-plotter = pv.Plotter(off_screen=True, window_size=(1600, 640))
+scene = presets.heading().replace(material=Material(ambient=0.25, diffuse=0.75, specular=0))
+plotter = pv.Plotter(off_screen=True, window_size=(1400, 830))
 plotter.set_background("#14181d")
 plotter.vizlight.add_mesh(fibres, scene=scene, line_diameter=0.21)
-plotter.vizlight.add_key(scene, question="heading", size=0.3)
-plotter.camera = render.camera_on(fibres, (0.3, -1, 0.2), aspect=1.9, zoom=1.04)
+plotter.vizlight.add_key(scene, question="heading", size=0.24)
+plotter.camera = render.camera_on(fibres, (1, -0.5, 0.3), aspect=1.36, zoom=1.02)
 plotter.enable_anti_aliasing("ssaa")
 plotter.show(auto_close=False)
 

@@ -2,9 +2,9 @@
 How steeply do lines run toward you?
 ====================================
 
-300 fibres of a brain's white matter. Above: PyVista's tubes under its light. Below: under one lamp
+300 fibres of a brain's white matter. Left: PyVista's tubes under its light. Right: under one lamp
 at the eye (``vizlight.presets.slope``) a fibre is white where it runs across the view and dark
-where it runs toward you or away, as the bar tells: the top of the arch points at you. The rank
+where it runs toward you or away, as the bar tells: a branch before the arch points at you. The rank
 correlation of lightness with slope in the picture is printed below. Which of its ends is near is
 not told; the example of heading tells that too.
 """
@@ -18,23 +18,22 @@ fibres = vizlight.load_example("fibre_bundle.vtp")
 scene = presets.slope().replace(material=Material(ambient=0.12, diffuse=0.88, specular=0))
 look = {"line_diameter": 0.2, "exponent": 2}
 
-size = {"window_size": (1500, 1200), "shape": (2, 2), "col_weights": (1, 0.15)}
-plotter = pv.Plotter(off_screen=True, border=False, **size)
-plotter.set_background("#14181d", all_renderers=True)
-words = {"position": "upper_edge", "color": "white", "font_size": 12}
-camera = render.camera_on(fibres, (0.3, -1, 0.2), aspect=2.2, zoom=0.96)
+sheet = {"window_size": (1800, 680), "shape": (1, 3), "col_weights": (1, 1, 0.3)}
+plotter = pv.Plotter(off_screen=True, border=False, **sheet)
+plotter.set_background("#2c343e", all_renderers=True)
+words = {"position": "upper_edge", "color": "white", "font_size": 15}
+camera = render.camera_on(fibres, (1, -0.5, 0.3), aspect=1.15, zoom=1.0)
 plotter.add_mesh(fibres.tube(radius=0.1), color="tan", smooth_shading=True)
 plotter.add_text("\nPyVista: tubes in its light", **words)
 plotter.camera = camera
 plotter.enable_anti_aliasing("ssaa")
-plotter.subplot(1, 0)
+plotter.subplot(0, 2)
+plotter.vizlight.add_key(scene, question="slope", exponent=2, size=0.35)
+plotter.subplot(0, 1)
 plotter.vizlight.add_mesh(fibres, scene=scene, **look)
 plotter.add_text("\nvizlight: one lamp at the eye", **words)
 plotter.camera = camera
 plotter.enable_anti_aliasing("ssaa")
-plotter.subplot(1, 1)
-plotter.vizlight.add_key(scene, question="slope", exponent=2, size=0.25)
-plotter.subplot(1, 0)
 plotter.show(auto_close=False)
 
 # %%

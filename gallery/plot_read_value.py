@@ -19,8 +19,9 @@ from vizlight import Material, presets
 surface = vizlight.load_example().contour([600], scalars="Temp").subdivide(2, "loop")
 surface["speed"] = np.linalg.norm(surface["V"], axis=1)
 scene = presets.value().replace(material=Material(ambient=0.65, diffuse=0.35, specular=0))
-words = {"position": "upper_edge", "color": "black", "font_size": 11}
-bar = {"color": "black", "n_labels": 3, "position_x": 0.2, "position_y": 0.05, "width": 0.6}
+words = {"position": "upper_edge", "color": "black", "font_size": 14}
+bar = {"color": "black", "n_labels": 3, "fmt": "%.0f", "width": 0.6}
+bar |= {"position_x": 0.2, "position_y": 0.05}
 title = "speed, unit of the simulation\n"
 
 plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=(1600, 760), border=False)

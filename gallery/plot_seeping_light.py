@@ -11,19 +11,22 @@ stays dark. The dog is 1.2 long.
 # sphinx_gallery_thumbnail_number = 1
 import matplotlib.pyplot as plt
 import numpy as np
+import pyvista as pv
 
 import vizlight
-from vizlight import Light, Material, Scene, render
+from vizlight import Light, Material, Scene, View, render
 
-dog = vizlight.load_example("dog.vtp").compute_normals(split_vertices=False)
+dog = vizlight.load_example("dog.vtp").subdivide(1, "loop")
+dog = dog.compute_normals(split_vertices=False)
+eyes = [pv.Sphere(radius=0.012, center=(0.363, side * 0.024, 0.7046)) for side in (-1, 1)]
 head = (0.12, 0.47, -0.1, 0.1, 0.44, 0.81)
-camera = render.camera_on(head, (1.0, -0.85, 0.12), aspect=0.9, zoom=1.25)
-behind = Light(direction=(-0.9, 0.75, 0.35), intensity=0.75)
-beside = Light(direction=(0.2, -1, 0.9), intensity=0.22)
+camera = render.camera_on(head, (1.0, -0.85, 0.12), aspect=0.9, zoom=1.24)
+behind = Light(direction=(-0.9, 0.75, 0.35), intensity=0.9)
+beside = Light(direction=(0.2, -1, 0.9), intensity=0.3)
 panels = []
 for title, depth in (
-    ("cosine: no light passes", 0.0), ("light passes, d = 0.006", 0.006),
-    ("light passes, d = 0.01", 0.01),
+    ("cosine: no light passes", 0.0), ("light passes, d = 0.002", 0.002),
+    ("light passes, d = 0.005", 0.005),
 ):  # fmt: skip
     scene = Scene(
         lights=[behind, beside],
@@ -33,9 +36,12 @@ for title, depth in (
     lit["rgb"] = lit["rgb"] ** 0.65
     # A bust: the cut runs from the nape to the chest.
     lit = lit.clip(normal=(1, 0, 0.9), origin=(0.16, 0, 0.5), invert=False)
-    panels.append(render.Panel(lit, "rgb", title))
+    dark = Material(specular=3, shininess=12, color="#38200f")
+    dark = scene.replace(view=View.from_camera(camera), material=dark)
+    both = pv.MultiBlock([lit, *(vizlight.illuminate(eye, dark) for eye in eyes)])
+    panels.append(render.Panel(both, "rgb", title))
 
-plotter = render.make_plotter(panels, camera=camera, size=(1950, 760), background="#14181d")
+plotter = render.make_plotter(panels, camera=camera, size=(1800, 800), background="#2c343e")
 plotter.show()
 
 # %%

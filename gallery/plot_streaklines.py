@@ -4,8 +4,8 @@ Smoke in a flow that changes with time
 
 Vortices of alternating sign drift to the right, as behind a pillar in the wind. Smoke leaves a row
 of points all the time: streaklines, carried from step to step by ``vizlight.pathlines`` and lit by
-their own directions at each. Old smoke is blue, and it keeps the shape of vortices that it has met;
-streamlines of one step do not show what has happened before.
+their own directions at each. Old smoke is blue, fades, and keeps the shape of vortices that it has
+met; streamlines of one step do not show what has happened before.
 ``vizlight.movie.save(frames, "smoke.mp4")`` writes such frames as a movie.
 """
 
@@ -51,15 +51,15 @@ plotter = pv.Plotter(off_screen=True, window_size=(1000, 380))
 plotter.background_color = "#14181d"
 plotter.enable_anti_aliasing("ssaa")
 plotter.camera = camera
-tints = ["#ff6a4d", "#ffc27a", "#f7f0d0", "#9ad4ee", "#5a8fe8"]
+tints = ["#ff6a4d", "#ffc27a", "#f7f0d0", "#9ad4ee", "#5a8fe8", "#14181d"]
 aged = {"cmap": LinearSegmentedColormap.from_list("age", tints), "clim": (0, 4)}
-plotter.vizlight.add_key(scene, question="value", title="Age of the smoke", lying=True, **aged)
+plotter.vizlight.add_key(scene, question="value", title="Age of the smoke, s", lying=True, **aged)
 plotter.open_gif(Path(mkdtemp()) / "smoke.gif", fps=8)
 for number, lines in enumerate(frames):
     lines["age"] = lines.field_data["TimeValue"][0] - lines["Time"]
     lit = vizlight.tint(lines, "age", **aged)
     plotter.add_mesh(
-        lit, scalars="rgb", rgb=True, lighting=False, line_width=2.6, name="smoke", render=False
+        lit, scalars="rgb", rgb=True, lighting=False, line_width=3.2, name="smoke", render=False
     )
     if number > 89 and number % 3 == 0:  # a period of the vortices
         plotter.write_frame()

@@ -13,10 +13,11 @@ from matplotlib.colors import LinearSegmentedColormap
 
 from vizlight import Light, Material, Scene, legibility, load_example, relief_shadow, render, tint
 
-tints = ["#1d3f72", "#2b6a9c", "#6fb0cc", "#d6ecec", "#5f9a52", "#b5965f", "#f4efe6"]
-places = [0, 0.3, 0.58, 0.665, 0.6665, 0.83, 1]  # of heights from -6000 to 3000 m
+tints = ["#1d3f72", "#2b6a9c", "#6fb0cc", "#a4d2dc", "#5f9a52", "#b5965f", "#f4efe6"]
+places = [0, 0.3, 0.58, 0.652, 0.668, 0.83, 1]  # of heights from -6000 to 3000 m
 tints = LinearSegmentedColormap.from_list("sea and land", list(zip(places, tints, strict=True)))
 relief = load_example("hawaii.vti").resample(6.0, interpolation="bspline")
+relief = relief.gaussian_smooth(std_dev=3)
 sun = Light(direction=(-0.87, 0.25, 0.42), color="#ffc080", intensity=1.1)
 blue = Light(direction=(0.48, -0.14, 0.87), color="#80b8ff", intensity=0.6)
 scene = Scene(lights=[sun, blue], material=Material(ambient=0.4, diffuse=0.85, specular=0))

@@ -231,7 +231,8 @@ def make_plotter(
             lit = light == "auto" and plain
             _draw(plotter, panel, cmap, clim, lines, camera, fragments=lit)
             if panel.title:
-                text = plotter.add_text(panel.title, position="upper_edge", font_size=10, color=ink)
+                em = max(10, pixels[0] // columns // 50)  # readable in a column of print
+                text = plotter.add_text(panel.title, position="upper_edge", font_size=em, color=ink)
                 # VTK sets it so near to the edge that letters touch it.
                 text.GetTextProperty().SetLineOffset(8)
                 text.GetTextProperty().SetLineSpacing(1.3)

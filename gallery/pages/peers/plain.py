@@ -251,7 +251,7 @@ PICTURES = {
     "winds": ("which way on the screen?", "median error, degrees", winds),
     "read_slope": (
         "how steep are fibres?", "rank correlation with lightness",
-        lambda: tubes("read_slope", 0.1, "slope", "spearman", (1, 0)),
+        lambda: tubes("read_slope", 0.1, "slope", "spearman", (0, 1)),
     ),
     "read_heading": (
         "which end is near?", "median error in space, degrees",
