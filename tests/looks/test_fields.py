@@ -399,3 +399,19 @@ def test_displacements_have_a_linear_bar_and_a_word_for_their_length():
         named.rename_array(old, new)
     (key,) = vizlight.look(named, array="u,v,w").key
     assert key["cmap"].log_scale
+
+
+def test_no_stroke_is_between_vectors_and_missing_ones():
+    grid = pv.ImageData(dimensions=(41, 31, 1))
+    x, y, _ = grid.points.T
+    wind = np.column_stack([1 + 0.02 * y, 0.02 * (x - 20), 0 * x])
+    is_land = (x > 12) & (x < 28) & (y > 10) & (y < 20) & (x != 20)
+    wind[is_land] = np.nan
+    grid["wind"] = wind
+    layers = vizlight.look(grid).drawing.layers
+    (strokes,) = (layer.mesh.run() for layer in layers if layer.mesh.path == "vizlight.streamlines")
+    surface = grid.extract_surface(algorithm="dataset_surface").triangulate()
+    cells = surface.find_containing_cell(strokes.points)
+    inside = np.isnan(surface["wind"][surface.regular_faces[cells]]).any(axis=(1, 2))
+    # A place on the edge of two triangles may be found in either.
+    assert inside.mean() < 0.02

@@ -83,6 +83,8 @@ SENSE_IN_CUT = "; arrows: part in the cut"
 TRAVEL = 3.0
 #: Share by which the shortest vectors are shorter than most, below which lengths are no speed.
 EVEN = 0.05
+#: Number beyond all vectors that are there.
+MOST_FINITE = 1e300
 #: Most cells of a volume in which lines are evenly spaced, and the number of lines in larger ones.
 MOST_CELLS, SEEDS = 250_000, 300
 
@@ -525,6 +527,11 @@ def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | No
     # Of one mesh normals are computed once.
     whole = isinstance(surface, pv.PolyData) and surface.is_all_triangles
     triangles = mesh if whole else Step("triangles", ".triangulate", mesh)
+    if not np.isfinite(surface[array.name]).all() and not array.of_cells:
+        # Between a vector and a missing one, as at a coast, no line is drawn.
+        every: Keywords = {"scalars": array.name, "all_scalars": True, "component_mode": "all"}
+        known = Step("known", ".threshold", triangles, (-MOST_FINITE, MOST_FINITE), **every)
+        triangles = Step("known", ".extract_surface", known, algorithm="dataset_surface")
     strokes = Step("strokes", "vizlight.streamlines", triangles, scene, **keywords)
     try:
         strokes.run()
