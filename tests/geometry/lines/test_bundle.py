@@ -152,7 +152,7 @@ def test_the_mean_share_of_each_case_is_as_right_as_stated(name, seed, claim):
     assert 0.1 < np.mean(found, axis=0)[0] < 0.97
     claim(abs(error.mean()), most + 2 * error.std() / np.sqrt(len(error)))
     assert error.std() / np.sqrt(len(error)) < 0.012
-    claim(np.abs(error).max(), 0.07, "single")
+    claim(np.abs(error).max(), 0.08, "single")
     assert f"{most:g}" in vizlight.Bundle.__doc__.partition("Notes")[2]
 
 
