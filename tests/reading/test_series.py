@@ -86,6 +86,8 @@ def test_a_time_that_is_not_there_is_an_error_with_those_that_are(tmp_path):
     for asked in (0.7, 3, -4, "soon", np.nan):
         with pytest.raises(ValueError, match="time: expected a time of a step, 0, 0.5, 2, "):
             vizlight.read(path, time=asked)
+    with pytest.raises(ValueError, match=r"got 1\.6; the nearest is 2$"):
+        vizlight.read(path, time=1.6)
 
 
 def test_a_file_without_steps_is_opened_once(monkeypatch, tmp_path):

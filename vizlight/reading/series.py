@@ -192,7 +192,8 @@ def chosen(times: Sequence[float], time: object, name: str = "time") -> int:
     noun = "a time of a step" if name == "time" else "a value"
     expected = f"{noun}, {listed(times)}, an index from 0 to {count - 1}, or last"
     got = f"{number:g}" if np.isfinite(number) else repr(time)
-    raise NoStepError(_check.message(name, expected, got))
+    remedy = f"the nearest is {times[int(np.nanargmin(off))]:g}" if np.isfinite(off).any() else ""
+    raise NoStepError(_check.message(name, expected, got, remedy))
 
 
 def listed(times: Sequence[float]) -> str:

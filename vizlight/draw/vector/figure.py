@@ -265,10 +265,11 @@ def _note(path: Path, best: _Attempt, *, error: float | None) -> None:
     if not np.isfinite(best.error):
         _check.warn(
             f"'{path.name}' holds pixels and words, in {size}: as paths it would be larger than "
-            f"{LARGEST // 1000} kB at an error of {COARSEST:g} of 255; error= makes paths"
+            f"{LARGEST // 1000} kB at an error of {COARSEST:g} of 255; save_graphic(error=) of a "
+            "plotter makes paths"
         )
     elif len(best.data) > LARGEST:
-        remedy = "a larger error= makes it smaller, and so do fewer details"
+        remedy = "a larger save_graphic(error=) makes it smaller, and so do fewer details"
         _check.warn(
             f"'{path.name}' has {size} at an error of {best.error:.1f} of 255, more than "
             f"{LARGEST // 1000} kB: {remedy}"
@@ -276,5 +277,5 @@ def _note(path: Path, best: _Attempt, *, error: float | None) -> None:
     elif error is None and best.error > UNSAID:
         _check.warn(
             f"colours of '{path.name}' are within {best.error:.1f} of 255, so that it has at most "
-            f"{LARGEST // 1000} kB ({size}); error={UNSAID:g} makes a larger file"
+            f"{LARGEST // 1000} kB ({size}); save_graphic(error={UNSAID:g}) makes a larger one"
         )
