@@ -382,7 +382,7 @@ def _around(sheet: charts.MapSheet, size: float, turn: Array) -> list[Part]:
             if is_around:
                 break
             # One word for each line, at the end that is farthest to its side, or at another side
-            # where it has none there.
+            # where it has none.
             ends = sorted(ends, key=lambda crossing: -float(crossing[2] @ toward))
             ends = [crossing for crossing in ends if crossing[0] >= ASIDE][:1]
             if ends:

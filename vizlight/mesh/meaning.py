@@ -607,7 +607,7 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
 _CELSIUS = {"degree_c", "degree_celsius", "degc", "celsius", "deg_c", "degree celsius", "deg c"}
 #: Names of temperatures, in lower case.
 _TEMPERATURE = re.compile(r"t|theta|(.*[^a-z])?temp(erature)?s?([^a-z].*)?|(.*[^a-z])?(sst|tas)")
-#: Words of what is only a difference of temperatures, in lower case.
+#: Words of differences of temperatures, in lower case.
 _DIFFERENCE = re.compile("anomal|bias|change|departure|differ|trend")
 #: Names of directions, in lower case.
 _DIRECTION = re.compile(r".*(heading|azimuth|direction|orientation|bearing|course).*|aspect")

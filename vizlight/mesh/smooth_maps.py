@@ -12,7 +12,7 @@ from vizlight.mesh import blocks
 #: Types of grids that may have one layer.
 Grid = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
 
-#: Name of the share of values that are there, which the result does not keep.
+#: Name of the share of values that are known, which the result does not keep.
 SHARE = "share"
 
 

@@ -786,7 +786,7 @@ def path_of(mesh: Step) -> Path:
 
 
 def named(name: str, title: str) -> str:
-    """Return a title after a name, if there is one."""
+    """Return a title after a name that is not empty."""
     return f"{name}, {title}" if name else title
 
 

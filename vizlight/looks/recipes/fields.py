@@ -83,7 +83,7 @@ SENSE_IN_CUT = "; arrows: part in the cut"
 TRAVEL = 3.0
 #: Share by which the shortest vectors are shorter than most, below which lengths are no speed.
 EVEN = 0.05
-#: Number beyond all vectors that are there.
+#: Number beyond all components of vectors.
 MOST_FINITE = 1e300
 #: Most cells of a volume in which lines are evenly spaced, and the number of lines in larger ones.
 MOST_CELLS, SEEDS = 250_000, 300
