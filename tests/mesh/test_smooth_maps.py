@@ -75,8 +75,8 @@ def test_values_end_halfway_to_missing_ones():
     for column, is_there in ((3, False), (3.25, False), (3.75, True), (4, True)):
         nearest = smooth.find_closest_point((-1 + 2 * column, 4 + 3 * 2, 2))
         assert np.isfinite(smooth["v"][nearest]) == is_there
-    known = np.isfinite(mesh["v"])
-    for place, value in zip(mesh.points[known], mesh["v"][known], strict=True):
+    has_value = np.isfinite(mesh["v"])
+    for place, value in zip(mesh.points[has_value], mesh["v"][has_value], strict=True):
         assert smooth["v"][smooth.find_closest_point(place)] == pytest.approx(value)
 
 

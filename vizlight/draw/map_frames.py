@@ -376,8 +376,7 @@ def _around(sheet: charts.MapSheet, size: float, turn: Array) -> list[Part]:
             if np.allclose(flat[0], flat[-1], rtol=0, atol=near):
                 parts.append(_inside(flat, word, SMALL * size))
             continue
-        sides = (below, beside) if is_meridian else (beside, below)
-        for toward in sides[:1] if is_around else sides:
+        for toward in (below, beside) if is_meridian else (beside, below):
             ends = [(*_away(end, outline, 2 * near, toward), end) for end in (flat[0], flat[-1])]
             if is_around:
                 break

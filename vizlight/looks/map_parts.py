@@ -200,7 +200,7 @@ def smoothed(mesh: Step, array: Named) -> Step | None:
         return None
     factor = min(FINE // max(sizes), MOST_FINER)
     is_known = np.isfinite(grid.point_data[array.name])
-    if not is_known.all() and is_known.any() and max(sizes) <= FINE:
+    if not is_known.all() and max(sizes) <= FINE:
         # Its edge is that of areas around points.
         factor = max(factor, 2)
     if factor < 2 or not is_known.any():

@@ -127,10 +127,8 @@ def segments_of(parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera) ->
     course = AllSegments(parts, pixels.size, camera)
     columns = zip(*course.rows(seen), strict=True)
     start, way, along, line = (np.concatenate(column) for column in columns)
-    width_of, sense = np.concatenate(widths), np.concatenate(ahead)
-    return Segments(
-        number, start, way, along, line, width_of, sense, course, np.concatenate(lean)
-    )  # fmt: skip
+    width_of, sense, leans = (np.concatenate(column) for column in (widths, ahead, lean))
+    return Segments(number, start, way, along, line, width_of, sense, course, leans)
 
 
 class _Rows(NamedTuple):
@@ -458,9 +456,7 @@ def _numbered(pixels: Pixels, numbers: list[Indices]) -> Indices:
     return shown
 
 
-def ahead_of(
-    number: Indices, turned: Indices, ink: Array, bare: Bools, eye: Eye
-) -> Array:  # fmt: skip
+def ahead_of(number: Indices, turned: Indices, ink: Array, bare: Bools, eye: Eye) -> Array:
     """Return whether marks look as they are or as if turned round, by the pixels that differ.
 
     This is the contrast of the pixels that a mark has and would not have if it were turned, less

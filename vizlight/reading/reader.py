@@ -501,13 +501,13 @@ def _name_blocks(mesh: pv.DataSet, data: pv.MultiBlock) -> None:
     ids = mesh.cell_data.get(_OF_BLOCKS)
     if ids is None or len(there := np.unique(ids)) < 2:
         return
-    said, words = meaning.of(mesh), dict[int, str]()
+    said, kinds = meaning.of(mesh), dict[int, str]()
     for block, path in blocks.named_blocks(data):
         if _OF_BLOCKS in block.cell_data and (number := block.cell_data[_OF_BLOCKS][0]) in there:
             name = path.rpartition("/")[2].removeprefix("Unnamed block ID: ")
-            words[int(number)] = f"{number}:{'_'.join(name.split())}"
+            kinds[int(number)] = name.strip()
     mesh.rename_array(_OF_BLOCKS, "block", preference="cell")
-    said.arrays["block"] = {"flags": " ".join(words.values())}
+    said.add_kinds("block", [(number, name, ()) for number, name in kinds.items()])
     meaning.attach(mesh, said)
 
 

@@ -104,14 +104,17 @@ def values(case: Case) -> Drawing:
         keywords = case.colors_of_heights
     elif not bent:
         # Nothing is lit: the map may run in lightness, which shows more than hues alone.
-        rows = np.asarray(mesh.run()[array.name])
-        # Missing values make numbers in floating point of those of a camera.
-        whole = np.array_equal(rows, np.round(rows), equal_nan=True)
         # Of bytes on a map those up to 100 may be shares; bands without a name are a sensor's.
         is_band = case.contents.raster and array.name.startswith("band_")
         is_tone = is_band or (case.contents.raster and 100 < array.high <= 255)
-        is_picture = whole and array.low >= 0 and is_tone
-        is_gray = case.is_of_body or is_picture or (whole and meaning.is_photograph(mesh.run()))
+        is_photograph = meaning.is_photograph(mesh.run())
+        rows = np.asarray(mesh.run()[array.name])
+        # Missing values make numbers in floating point of those of a camera.
+        is_whole = (is_tone or is_photograph) and np.array_equal(
+            rows, np.round(rows), equal_nan=True
+        )
+        is_picture = is_whole and array.low >= 0 and is_tone
+        is_gray = case.is_of_body or is_picture or (is_whole and is_photograph)
         cmap = "gray" if is_gray else LIGHTNESS
         kind = {"amounts": case.is_of_earth and not is_gray, "scan": is_picture and is_band}
         keywords, note = case.ranged_of(mesh, array, cmap, **kind)
