@@ -119,14 +119,14 @@ def captions(
     size: float,
     ends: Sequence[Sequence[str]] = (),
     unit: str = "",
-    named: bool = True,
+    names: Sequence[str] | None = None,
 ) -> pv.PolyData:
     """Return words around blocks: their names above them, their ends below, and a bar of lengths.
 
     Parameters
     ----------
     meshes : mesh
-        Blocks with names; another mesh has none.
+        Blocks; another mesh has no name.
     camera, height, size
         As for :func:`box_axes`.
     ends : sequence of (str, str), optional
@@ -134,8 +134,8 @@ def captions(
     unit : str, optional
         Unit of the coordinates, with which a bar of a round length stands below the last block. In
         perspective it is that of lengths at the middle of the block.
-    named : bool, default: True
-        Whether blocks have names; otherwise all of them are taken for one mesh.
+    names : sequence of str, optional
+        Names of the blocks; without any all of them are taken for one mesh. Default: their own.
 
     Returns
     -------
@@ -148,8 +148,9 @@ def captions(
         If a block has no finite box, a height is not positive, or a block has no two ends.
     """
     _check.instance("meshes", meshes, Mesh, "a PyVista mesh")
-    has_names = _check.boolean("named", named) and isinstance(meshes, pv.MultiBlock)
-    blocks_of = [*zip(meshes.keys(), meshes, strict=True)] if has_names else [("", meshes)]
+    blocks_of = [("", meshes)]
+    if isinstance(meshes, pv.MultiBlock) and names != ():
+        blocks_of = [*zip(_names_of(meshes, names), meshes, strict=True)]
     height, size = _check.positive("height", height), _check.positive("size", size)
     unit = _check.text("unit", unit)
     expected = f"two words for each of the {len(blocks_of)} blocks"
@@ -166,6 +167,15 @@ def captions(
         is_last = i == len(blocks_of) - 1
         parts += _around(mesh, str(name), below, unit * is_last, eye, size)
     return blocks.polydata(*letters.union(parts)) if parts else pv.PolyData()
+
+
+def _names_of(meshes: pv.MultiBlock, names: object) -> list[str]:
+    """Return the names of blocks, those that are given or their own."""
+    words: object = meshes.keys() if names is None else names
+    if not isinstance(words, list | tuple) or len(words) != len(meshes):
+        expected = f"a name for each of the {len(meshes)} blocks"
+        raise _check.value_error("names", expected, _check.describe(names))
+    return [_check.text("names", word) for word in words]
 
 
 def _around(

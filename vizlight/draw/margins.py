@@ -196,7 +196,8 @@ class Margin:
             # Above the corner of a map.
             left, upper = _box_of(renderer, data=False)[[0, 3]]
             gap = max(float(_box_of(renderer, data=True)[0]), left, MARGIN * short)
-        lowered = bool(renderer.GetSize()[1] - upper > 1.9 * letters)
+        has_room = LETTER * letters * len(title) < renderer.GetSize()[0] - gap
+        lowered = has_room and bool(renderer.GetSize()[1] - upper > 1.9 * letters)
         room = (size[0] - gap - MARGIN * short) / (LETTER * letters)
         scale = max(min(room / max(len(title), 1), 1.0), SMALLEST_TITLE)
         lines = textwrap.wrap(title, max(int(room / scale), 1))

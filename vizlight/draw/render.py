@@ -26,7 +26,7 @@ from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on
 from vizlight.draw.scalar_bars import name_no_data
-from vizlight.draw.several_views import several_views
+from vizlight.draw.several_views import beside, inset, several_views
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
 from vizlight.mesh.blocks import all_blocks, check
@@ -37,9 +37,9 @@ from vizlight.vtk.polylines import has_lines_only
 from vizlight.writing import check_output, replace_file
 
 __all__ = [
-    "Backend", "BackendError", "Panel", "PlotterKeywords", "Probe", "box_axes",
-    "box_edges", "camera_on", "canvas", "captions", "choose_backend", "make_plotter",
-    "over_shoulder", "pictures", "probe", "save", "save_png", "several_views",
+    "Backend", "BackendError", "Panel", "PlotterKeywords", "Probe", "beside",
+    "box_axes", "box_edges", "camera_on", "canvas", "captions", "choose_backend", "inset",
+    "make_plotter", "over_shoulder", "pictures", "probe", "save", "save_png", "several_views",
 ]  # fmt: skip
 
 AntiAliasing = Literal["auto", "ssaa", "msaa", "fxaa"]

@@ -83,6 +83,94 @@ def several_views(
     return pv.MultiBlock(blocks)
 
 
+def inset(
+    mesh: Mesh,
+    camera: pv.Camera,
+    direction: Sequence[float],
+    place: Sequence[float],
+    /,
+    *,
+    up: Sequence[float] | None = None,
+    around: Mesh | None = None,
+) -> Mesh:
+    """Return a mesh that a parallel camera sees from another side, in a place of its picture.
+
+    Parameters
+    ----------
+    mesh : mesh
+        Mesh, which is not changed.
+    camera : pyvista.Camera
+        Camera of the picture.
+    direction, up : vector of 3 components
+        As for :func:`vizlight.draw.render.camera_on`.
+    place : (float, float, float, float)
+        Middle of the place to the right and up from that of the picture, and its width and height,
+        in halves of the height of the picture. The mesh fills it, but is no larger than in the
+        picture itself.
+    around : mesh, optional
+        Mesh that fills the place, such as that of which ``mesh`` is a part. Default: the mesh.
+
+    Returns
+    -------
+    mesh
+        Turned, shifted and smaller mesh, at the depth of the focal point of the camera.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument does not fit.
+    """
+    whole = mesh if around is None else around
+    for name, each in (("mesh", mesh), ("around", whole)):
+        _check.instance(name, each, Mesh, "a PyVista mesh")
+    spot = _check.coordinates("place", place)
+    if spot.shape != (4,) or not min(spot[2:]) > 0:
+        expected = "a middle, a width and a height above 0"
+        raise _check.value_error("place", expected, _check.describe(place))
+    eye = axes_of(np.negative(camera.direction).tolist(), camera.up)
+    axes, half = axes_of(direction, up), float(camera.parallel_scale)
+    centre = np.reshape(common_bounds("around", [whole]), (3, 2)).mean(axis=1)
+    box = _box(whole, axes, centre)
+    sizes = np.ptp(box, axis=1)
+    scale = min([1.0, *(half * spot[2:] / np.where(sizes > 0, sizes, np.inf))])
+    matrix = np.eye(4)
+    matrix[:3, :3] = scale * eye.T @ axes
+    middle = centre + box.mean(axis=1) @ axes[:2]
+    target = np.asarray(camera.focal_point) + half * spot[:2] @ eye[:2]
+    matrix[:3, 3] = target - matrix[:3, :3] @ middle
+    return _moved(mesh, matrix)
+
+
+def beside(camera: pv.Camera, /, *, right: float = 0.0, below: float = 0.0) -> pv.Camera:
+    """Return a parallel camera whose picture has that of another one at its upper left.
+
+    Parameters
+    ----------
+    camera : pyvista.Camera
+        Camera, which is not changed.
+    right, below : float
+        Width at the right and height below by which the picture is larger, in halves of the height
+        of that of ``camera``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a number does not fit.
+    """
+    right, below = (
+        _check.number(name, value, low=0.0) for name, value in (("right", right), ("below", below))
+    )
+    half = float(camera.parallel_scale)
+    eye = axes_of(np.negative(camera.direction).tolist(), camera.up)
+    shift = half / 2 * (right * eye[0] - below * eye[1])
+    wide = camera.copy()
+    wide.focal_point = tuple(np.asarray(camera.focal_point) + shift)
+    wide.position = tuple(np.asarray(camera.position) + shift)
+    wide.parallel_projection = True
+    wide.parallel_scale = half * (1 + below / 2)
+    return wide
+
+
 def _turns(views: object, up: object) -> list[Array]:
     """Return the axes of the picture of each view: to the right, up and toward the eye."""
     ways: Foreign = views

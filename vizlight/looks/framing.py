@@ -8,6 +8,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyvista as pv
@@ -19,6 +20,11 @@ from vizlight.looks.contents import LAYER, Contents
 from vizlight.mesh import georeference, meaning
 from vizlight.mesh.creases import creases
 from vizlight.vtk.cells import connectivity
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from vizlight.looks.steps import Step
 
 #: Most points or cells that are looked at.
 SAMPLE = 20_000
@@ -32,6 +38,10 @@ AZIMUTHS, ALTITUDES = range(-155, 205, 45), (20.0, 35.0)
 DIAGONALS, ABOVE_BOX = range(-130, 230, 90), (30.0,)
 #: How much more a view counts in which all creases are seen.
 CREASED = 0.3
+#: Length of the sum of the normals of a surface, as a share of its area, up to which it is closed.
+CLOSED = 0.1
+#: Least distance between the distributions of values on two sides that are both shown.
+OTHER = 0.15
 #: Power of the length of a body across the picture, over that in space, by which a view counts.
 ACROSS = 2
 #: How much more a view counts in which vectors run to the right.
@@ -53,6 +63,8 @@ Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 #: Shares of the height within which points are a base, even or uneven; least size of one on which a
 #: thing stands, as a share of that of its shadow, and largest of the others, as one of this one's.
 FEET, STANDS, SMALL_BASE = (0.02, 0.05), 0.25, 0.25
+#: Least correlation of temperatures with y, and largest with z, where y is up.
+RISING, LEVEL = 0.4, 0.1
 #: Formats of models of everyday things, which usually have y up.
 MODELS = {".obj", ".off"}
 #: Number of places of a surface that are mirrored, largest mean distance between it and its mirror
@@ -112,6 +124,48 @@ class Views:
         return Viewpoint(self.toward[0], self.up[0] if self.up else up, True, self.words)
 
 
+@dataclass(frozen=True)
+class Inset:
+    """Smaller view beside the main one.
+
+    Parameters
+    ----------
+    toward, up : vector
+        Directions toward the eye, and up.
+    name : str
+        Words above it.
+    ends : sequence of str
+        Words below its left and its right end, none without.
+    mesh : Step, optional
+        Step of a part that is shown in it, such as a section. Default: what the main view shows.
+    """
+
+    toward: Vector
+    up: Vector
+    name: str
+    ends: Sequence[str] = ()
+    mesh: Step | None = None
+
+
+@dataclass(frozen=True)
+class Strip:
+    """Insets beside or below the main view.
+
+    Parameters
+    ----------
+    insets : tuple of Inset
+        Insets, from the upper left.
+    share : float
+        Share of the width or the height of the room that is left for the main view.
+    is_below : bool
+        Whether they stand below it.
+    """
+
+    insets: tuple[Inset, ...]
+    share: float
+    is_below: bool
+
+
 #: Eye that sees three sides alike.
 ISOMETRIC = Viewpoint((1.0, 1.0, 1.0), (0.0, 0.0, 1.0))
 
@@ -144,7 +198,29 @@ def eye_of(
         # Data in a slab, such as a flow between two plates, are seen across it.
         return _above(mesh, int(np.argmin(extent)))
     rows = _vectors(mesh, shown) if contents.dimension == 3 else None
-    return _of_points(points, rows)
+    if contents.dimension != 3 or not _rises_along_y(mesh):
+        return _of_points(points, rows)
+    turned = None if rows is None else rows @ Y_TO_Z.T
+    return _with_y_up(_of_points(points @ Y_TO_Z.T, turned))
+
+
+def _rises_along_y(mesh: pv.DataSet) -> bool:
+    """Return whether what is warm is high where y is up, and not where z is."""
+    data = mesh.point_data
+    warm = next((name for name in data if meaning.is_temperature(mesh, name)), None)
+    if warm is None or data[warm].ndim != 1:
+        return False
+    rows = _finite(np.column_stack([data[warm], mesh.points[:, 1:]]))
+    if len(rows) < 2 or not np.ptp(rows, axis=0).all():
+        return False
+    along_y, along_z = np.corrcoef(rows.T)[0, 1:]
+    return bool(along_y > RISING and abs(along_z) < LEVEL)
+
+
+def _with_y_up(eye: Viewpoint) -> Viewpoint:
+    """Return the eye of data that were looked at as if y were z."""
+    toward = _vector(Y_TO_Z.T @ eye.toward)
+    return Viewpoint(toward, (0.0, 1.0, 0.0), False, f"{eye.words}, y up")
 
 
 def _vectors(mesh: pv.DataSet, shown: str | None) -> Array | None:
@@ -199,8 +275,7 @@ def _of_surface(surface: pv.PolyData, shown: str | None, is_model: bool) -> View
     # As if y were z, and back.
     corners, normals, edges = (rows @ Y_TO_Z.T for rows in (corners, normals, edges))
     eye = _around(corners, normals, edges, _ways(), values)
-    toward = _vector(Y_TO_Z.T @ eye.toward)
-    return Viewpoint(toward, (0.0, 1.0, 0.0), False, f"{eye.words}, y up")
+    return _with_y_up(eye)
 
 
 def _with_normals(corners: Array) -> tuple[Array, Array]:
@@ -419,6 +494,60 @@ def _around(
         scores.append((score * _length_across(spread, way) ** ACROSS, way))
     best = max(scores, key=lambda pair: pair[0])[1]
     return Viewpoint(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
+
+
+def eye_opposite(surface: pv.PolyData, eye: Viewpoint, shown: str) -> Viewpoint | None:
+    """Return the eye that sees most of what another one does not see of a closed surface.
+
+    Parameters
+    ----------
+    surface : pyvista.PolyData
+        Surface.
+    eye : Viewpoint
+        The other eye.
+    shown : str
+        Name of a point array.
+
+    Returns
+    -------
+    Viewpoint or None
+        None for open surfaces, and where values or the course of vectors are alike on both sides.
+    """
+    faces, corners = _triangles(surface)
+    if not len(corners):
+        return None
+    corners, normals = _with_normals(corners)
+    areas = np.linalg.norm(normals, axis=1)
+    if not areas.sum() > 0 or np.linalg.norm(normals.sum(axis=0)) > CLOSED * areas.sum():
+        return None
+    places, toward, up = _places(corners), np.asarray(eye.toward), np.asarray(eye.up)
+    front = _in_front(places, len(corners), toward)
+    rows = np.asarray(surface.point_data[shown], dtype=np.float64)[faces[:, 0]]
+    values = rows if rows.ndim == 1 else np.linalg.norm(rows, axis=1)
+    if _apart(values, areas * front, areas * ~front) < OTHER:
+        return None
+    toward, up = toward / np.linalg.norm(toward), up / np.linalg.norm(up)
+    height = (toward @ up) * up
+    ways = {
+        "From behind": 2 * height - toward, "From below": toward - 2 * height,
+        "From behind, below": -toward,
+    }  # fmt: skip
+    hidden = areas * ~front
+    seen = {word: hidden[_in_front(places, len(corners), way)].sum() for word, way in ways.items()}
+    word = max(seen, key=lambda name: float(seen[name]))
+    return Viewpoint(_vector(ways[word]), eye.up, True, word)
+
+
+def _apart(values: Array, weights: Array, others: Array) -> float:
+    """Return the largest difference of the cumulative distributions of values by two weights."""
+    kept = np.isfinite(values)
+    order = np.argsort(values[kept])
+    sums = [np.cumsum(each[kept][order]) for each in (weights, others)]
+    if not all(len(each) and each[-1] > 0 for each in sums):
+        return 0.0
+    steps = np.flatnonzero(np.diff(values[kept][order], append=np.inf))
+    first, second = (each[steps] / each[-1] for each in sums)
+    return float(np.abs(first - second).max())
 
 
 def _length_across(spread: Array, way: Array) -> float:

@@ -18,7 +18,7 @@ from vizlight._words import one_of, type_error, value_error
 from vizlight.draw.margins import parted
 from vizlight.draw.render import IMAGES, BackendError
 from vizlight.draw.vector import VECTORS
-from vizlight.looks import film, map_parts, together, views
+from vizlight.looks import film, insets, map_parts, together, views
 from vizlight.looks import options as look_options
 from vizlight.looks.contents import Contents, may_be_ground
 from vizlight.looks.recipes import fields, lines, maps, reliefs, surfaces
@@ -119,7 +119,8 @@ class Look:
     @property
     def view(self) -> pv.Camera:
         """Camera of the picture."""
-        camera: pv.Camera = self.drawing.camera.run()
+        drawing = self.drawing
+        camera: pv.Camera = (drawing.picture_camera or drawing.camera).run()
         return camera
 
     @property
@@ -285,9 +286,10 @@ class Look:
         keywords = {name: value for name, value in chosen.items() if value not in (None, True)}
         background = wishes.picture.get("background") or drawing.background or wishes.background
         plotter = Step("plotter", "render.canvas", wishes.size, background=background, **keywords)
-        steps = [layer.added(plotter) for layer in drawing.layers]
+        steps = [layer.added(plotter) for layer in (*drawing.layers, *drawing.insets)]
         steps += [_key_step(plotter, key) for key in self._keys]
-        steps.append(Step("", ".camera=", plotter, Step("", ".copy", drawing.camera)))
+        camera = drawing.picture_camera or drawing.camera
+        steps.append(Step("", ".camera=", plotter, Step("", ".copy", camera)))
         return plotter, steps
 
     @property
@@ -495,7 +497,7 @@ def decide(data: object, wishes: Wishes) -> Look:
         step, contents = look_options.laid_flat(step, contents, wishes)
         step, contents = look_options.with_heights(step, contents, wishes)
         rule, case = _chosen(step, contents, wishes)
-        case = views.of_case(case)
+        case = insets.of_case(rule.recipe, views.of_case(case))
         bar = views.unit_of_bar(case)
         wide = replace(case, wishes=replace(case.wishes, bar=bar, wide=case.is_wide))
         return _decided(rule, wide, notes)
@@ -557,6 +559,7 @@ def _look_of(rule: Rule, case: Case, drawing: Drawing, notes: Sequence[str]) -> 
     """Return the look of one mesh, as a recipe draws it, with the frame and coasts of a map."""
     drawing = maps.furnished(case, drawing)
     drawing = views.with_bar(case, views.arranged(case, drawing))
+    drawing = insets.drawn(case, drawing)
     drawing = replace(drawing, notes=[*notes, *drawing.notes])
     place = case.place_of_cut(drawing.camera)
     if place and drawing.keys and drawing.keys[0].get("title"):

@@ -60,7 +60,9 @@ def with_bar(case: Case, drawing: Drawing) -> Drawing:
     has_bar = isinstance(blocks, list) and getattr(blocks[-1], "path", "") == CAPTIONS
     if not isinstance(blocks, list) or not has_bar or case.wishes.views is not None:
         return drawing
-    bar = case.wishes.captions(blocks[0], drawing.camera, ends=case.ends_of_body(drawing.camera))
+    eye = drawing.camera.run()
+    ends = case.ends_of_body(np.negative(eye.direction), eye.up)
+    bar = case.wishes.captions(blocks[0], drawing.camera, ends=ends)
     return replace(drawing, layers=[*drawing.layers, case.inked(bar)])
 
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign, Keywords, Vector
     from vizlight.looks.contents import Named
-    from vizlight.looks.framing import Viewpoint, Views
+    from vizlight.looks.framing import Inset, Strip, Viewpoint, Views
 
     #: Function that returns the step of a scene, of a question, the steps of a view and a camera,
     #: and the dimension of space.
@@ -150,6 +150,8 @@ class Wishes:
         Step of a camera that several meshes share.
     views : Views, optional
         Views that stand beside each other.
+    strip : Strip, optional
+        Insets beside or below the main view.
     bar : str
         Unit of a bar of lengths below the data, which stands where nothing else says lengths.
     wide : bool
@@ -174,6 +176,7 @@ class Wishes:
     refine: float | None = None
     frame: Step | None = None
     views: Views | None = None
+    strip: Strip | None = None
     bar: str = ""
     wide: bool = False
     steps: Sequence[float] = ()
@@ -253,8 +256,8 @@ class Wishes:
             toward, parallel = direction(self.view), False
         if up is not None:
             keywords["up"] = up
-        # In perspective a bar holds at one depth alone.
-        if self.eye.get("parallel", parallel or bool(self.bar)):
+        # In perspective a bar holds at one depth alone, and insets would be seen from aside.
+        if self.eye.get("parallel", parallel or bool(self.bar) or self.strip is not None):
             keywords["parallel"] = True
         if zoom != 1:
             keywords["zoom"] = zoom
@@ -282,7 +285,7 @@ class Wishes:
 
         Letters are larger by the factor ``spare``.
         """
-        words: Keywords = {"unit": self.bar, "named": False}
+        words: Keywords = {"unit": self.bar, "names": ()}
         if ends:
             words["ends"] = [list(ends)]
         return self._captions(mesh, camera, spare, **words)
@@ -295,6 +298,13 @@ class Wishes:
         if views.ends:
             words["ends"] = [list(pair) for pair in views.ends]
         return self._captions(blocks, camera, spare, **words)
+
+    def around_insets(self, blocks: Step, camera: Step, insets: Sequence[Inset]) -> Step:
+        """Return the step that makes the words around insets."""
+        words: Keywords = {"names": [inset.name for inset in insets]}
+        if all(inset.ends for inset in insets):
+            words["ends"] = [list(inset.ends) for inset in insets]
+        return self._captions(blocks, camera, 1.0, **words)
 
     def _captions(self, meshes: object, camera: Step, spare: float, **words: object) -> Step:
         size = round(spare * SMALL * LETTERS * min(self.size), 1)
@@ -321,7 +331,11 @@ class Wishes:
         share = (1.0, 1.0)
         if self.picture.get("key", True) and key is not None:
             share = data_share(self.size, key, lying=self.wide)
-        return self.size[0] * share[0], self.size[1] * share[1]
+        width, height = self.size[0] * share[0], self.size[1] * share[1]
+        if self.strip is None:
+            return width, height
+        main = self.strip.share
+        return (width, main * height) if self.strip.is_below else (main * width, height)
 
     def fixed_camera(self) -> Step | None:
         """Return the step that sets a camera which was given, None where none was."""

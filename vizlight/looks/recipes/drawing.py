@@ -41,6 +41,8 @@ from vizlight.writing import FORMATS
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from numpy.typing import ArrayLike
+
     from vizlight._types import Array, Foreign, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.ranges import Range
@@ -196,6 +198,10 @@ class Drawing:
         Colour behind the data, where neither a white nor a dark one suits them.
     doubt : Doubt, optional
         Questions that the picture may fail to answer.
+    insets : sequence of Layer
+        Meshes of smaller views beside the main one, which pages and movies leave out.
+    picture_camera : Step, optional
+        Camera of a picture with insets. Default: that of the main view.
     """
 
     layers: Sequence[Layer]
@@ -212,6 +218,8 @@ class Drawing:
     colors: Keywords = dataclasses.field(default_factory=dict)
     background: str | None = None
     doubt: Doubt | None = None
+    insets: Sequence[Layer] = ()
+    picture_camera: Step | None = None
 
     @property
     def is_flat(self) -> bool:
@@ -239,7 +247,7 @@ class Drawing:
                 layer = dataclasses.replace(layer, mesh=surface)
             if step.path not in FACING:
                 kept.append(layer)
-        return dataclasses.replace(self, layers=kept, camera=camera)
+        return dataclasses.replace(self, layers=kept, camera=camera, insets=(), picture_camera=None)
 
     @property
     def turning(self) -> Drawing:
@@ -410,14 +418,13 @@ class Case:
         ]
         return ", ".join([place, *words])
 
-    def ends_of_body(self, camera: Step) -> Sequence[str]:
-        """Return the letters of the sides of a body at the left and the right of the picture.
+    def ends_of_body(self, toward: ArrayLike, up: ArrayLike) -> Sequence[str]:
+        """Return the letters of the sides of a body at the left and the right of a view.
 
         They are L, R, P, A, I and S; none where no axis runs across the picture, and of
         other data.
         """
-        eye = camera.run()
-        right = np.cross(eye.direction, eye.up)
+        right = np.cross(up, toward)
         across = np.flatnonzero(np.abs(right) > ALONG)
         if not self.is_of_body or not len(across):
             return ()

@@ -49,6 +49,8 @@ TURN, TURN_HUE = 0.6, 0.8
 LEAST_SPACING, LEAST_PLACE = 7.5, 2.2
 #: Multiple of these from which no picture need be read back before it is chosen.
 CLEAR = 2.0
+#: Factor of the least distance between strokes in small views.
+SPARSE = 2.0
 #: Length of a stroke in distances between strokes.
 LONG = 4.5
 #: Step of lines in distances between strokes, and in cells where these are no smaller.
@@ -223,6 +225,25 @@ def _is_even(mesh: pv.DataSet, name: str) -> bool:
     """Return whether vectors have nearly one length, such as unit vectors: directions alone."""
     least, median = np.percentile(_lengths(mesh, name), (1, 50))
     return bool(least > (1 - EVEN) * median)
+
+
+def strokes_on(case: Case, section: Step, camera: Step, pixel: float) -> Layer | None:
+    """Return the layer of strokes along vectors on a section, None if none can be laid.
+
+    Parameters
+    ----------
+    case : Case
+    section : Step
+        Step of the section, with the array of vectors of the case.
+    camera : Step
+        Camera of the main view.
+    pixel : float
+        Size of a pixel of the section in the unit of the mesh.
+    """
+    spacing = max(section.run().length * SPACING, SPARSE * LEAST_SPACING * case.width * pixel)
+    scene = case.wishes.scene("none", camera)
+    strokes = _strokes(section, scene, case.needed_array, spacing)
+    return None if strokes is None else _inked(case, strokes, camera)
 
 
 def _inked(case: Case, strokes: Step, camera: Step) -> Layer:
@@ -499,6 +520,8 @@ def _hull(case: Case, mesh: Step) -> list[Layer]:
 
 def _floor(case: Case, box: Step, camera: Step) -> list[Layer]:
     """Return the floor of a box as a layer, if the eye is above it: it helps to read heights."""
+    if camera.run().up[2] <= 0:
+        return []
     low = np.array(box.run().bounds).reshape(3, 2)
     if camera.run().position[2] <= low[2, 1]:
         return []
