@@ -280,6 +280,8 @@ OWN = {
     "molecules.atoms_in": {"volume": orbital},
     "stresses.with_von_mises": {"mesh": strained, "name": "S"},
     "several_views.several_views": {"mesh": ball, "views": (UP, (0, -1, 0)), "names": ("a", "b")},
+    "several_views.inset": {"mesh": ball, "direction": UP, "place": (0, 0, 1, 1), "up": (0, 1, 0)},
+    "several_views.beside": {"right": 0.5},
     "box_axes.box_axes": {"size": 10.0},
     "box_axes.captions": {"meshes": lambda: pv.MultiBlock({"a": ball()}), "size": 10.0},
     "map_frames.frame": {"mesh": europe, "letters": 1.5},

@@ -140,10 +140,23 @@ def test_axes_have_the_names_that_are_given():
     assert named.n_cells > usual.n_cells
 
 
+def test_names_take_the_place_of_those_of_blocks():
+    blocks = pv.MultiBlock({"a": pv.Box()})
+    camera = camera_on(blocks, (0, -1, 0), parallel=True)
+    own, given, none = (
+        module.captions(blocks, camera, HEIGHT, size=SIZE, names=names)
+        for names in (None, ["aa"], ())
+    )
+    assert given.n_cells == 2 * own.n_cells
+    assert not none.n_cells
+    with pytest.raises(ValueError, match="names: expected a name for each of the 1 blocks"):
+        module.captions(blocks, camera, HEIGHT, size=SIZE, names=["a", "b"])
+
+
 def test_a_bar_alone_stands_below_a_mesh_and_below_words_that_leave_it_no_room():
     box = pv.Box((0, 170, 0, 60, 0, 110))
     camera = camera_on(box, (0, -1, 0), parallel=True)
-    bar = module.captions(pv.MultiBlock([box]), camera, HEIGHT, size=SIZE, unit="mm", named=False)
+    bar = module.captions(pv.MultiBlock([box]), camera, HEIGHT, size=SIZE, unit="mm", names=())
     assert np.array_equal(
         bar.points, module.captions(box, camera, HEIGHT, size=SIZE, unit="mm").points
     )

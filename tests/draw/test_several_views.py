@@ -5,7 +5,8 @@ import pytest
 import pyvista as pv
 from refusals import refusals
 
-from vizlight.draw.several_views import several_views
+from vizlight.draw.cameras import axes_of, camera_on
+from vizlight.draw.several_views import beside, inset, several_views
 
 BOTH, NAMES = [(0, -1, 0), (0, 1, 0)], ("front", "back")
 
@@ -73,6 +74,50 @@ def test_colors_of_bytes_are_no_vectors():
         np.testing.assert_array_equal(rows[0], expected)
 
 
+def seen(camera, points):
+    """Return places in the picture of a parallel camera, in halves of its height."""
+    axes = axes_of(np.negative(camera.direction).tolist(), camera.up)
+    return (np.asarray(points) - camera.focal_point) @ axes[:2].T / camera.parallel_scale
+
+
+@pytest.mark.parametrize(("place", "scale"), [((1.6, 0.3, 0.5, 0.4), None), ((0, -3, 9, 9), 1.0)])
+def test_an_inset_is_seen_from_its_side_in_its_place_and_no_larger(place, scale):
+    mesh = ellipsoid(4, 1, 3)
+    camera = camera_on(mesh, (0.6, -1, 0.4), parallel=True)
+    turned = inset(mesh, camera, (0, 0, 1), place, up=(0, 1, 0))
+    flat = seen(camera, turned.points)
+    middle, sizes = (flat.max(axis=0) + flat.min(axis=0)) / 2, np.ptp(flat, axis=0)
+    np.testing.assert_allclose(middle, place[:2], atol=1e-5)
+    if scale is None:
+        assert np.isclose(np.max(sizes / place[2:]), 1, atol=1e-5)
+        scale = float(sizes[0] * camera.parallel_scale / mesh.bounds_size[0])
+    # Seen from above: x to the right and y up.
+    expected = scale * np.asarray(mesh.points)[:, :2] / camera.parallel_scale
+    np.testing.assert_allclose(flat - middle, expected, atol=1e-5)
+    depth = (np.asarray(turned.center) - camera.focal_point) @ camera.direction
+    assert abs(depth) < 1e-4
+    part = inset(pv.PolyData(mesh.points[:1]), camera, (0, 0, 1), place, up=(0, 1, 0), around=mesh)
+    np.testing.assert_allclose(part.points[0], turned.points[0], atol=1e-5)
+
+
+@pytest.mark.parametrize(("right", "below"), [(0.8, 0.0), (0.0, 0.6)])
+def test_a_picture_with_room_beside_has_that_of_its_camera_at_its_upper_left(right, below):
+    camera = camera_on(ellipsoid(4, 1, 3), (0.6, -1, 0.4), parallel=True, aspect=1.5)
+    wide = beside(camera, right=right, below=below)
+    axes = axes_of(np.negative(camera.direction).tolist(), camera.up)
+    half = camera.parallel_scale
+    corner = np.asarray(camera.focal_point) + half * (-1.5 * axes[0] + axes[1])
+    height = 1 + below / 2
+    expected = np.array([-(1.5 + right / 2), height]) / height
+    np.testing.assert_allclose(seen(wide, [corner])[0], expected, atol=1e-9)
+    assert np.isclose(wide.parallel_scale, height * half)
+
+
+test_places_that_are_none_are_refused = refusals(
+    lambda place: inset(pv.Sphere(), camera_on(pv.Sphere(), parallel=True), (0, 0, 1), place),
+    ((1, 2, 3), "place: expected a middle, a width and a height above 0"),
+    ((0, 0, 1, 0), "place: expected a middle, a width and a height above 0"),
+)
 test_views_that_are_none_are_refused = refusals(
     lambda mesh, views, options: several_views(mesh, views, **options),
     (pv.Sphere(), [], {"names": ()}, "views: expected directions toward the eye"),

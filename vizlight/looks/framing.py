@@ -524,7 +524,7 @@ def eye_opposite(surface: pv.PolyData, eye: Viewpoint, shown: str) -> Viewpoint 
     front = _in_front(places, len(corners), toward)
     rows = np.asarray(surface.point_data[shown], dtype=np.float64)[faces[:, 0]]
     values = rows if rows.ndim == 1 else np.linalg.norm(rows, axis=1)
-    if _apart(values, areas * front, areas * ~front) < OTHER:
+    if apart(values, areas * front, areas * ~front) < OTHER:
         return None
     toward, up = toward / np.linalg.norm(toward), up / np.linalg.norm(up)
     height = (toward @ up) * up
@@ -538,8 +538,14 @@ def eye_opposite(surface: pv.PolyData, eye: Viewpoint, shown: str) -> Viewpoint 
     return Viewpoint(_vector(ways[word]), eye.up, True, word)
 
 
-def _apart(values: Array, weights: Array, others: Array) -> float:
-    """Return the largest difference of the cumulative distributions of values by two weights."""
+def apart(values: Array, weights: Array, others: Array) -> float:
+    """Return the largest difference of the cumulative distributions of values by two weights.
+
+    Parameters
+    ----------
+    values, weights, others : ndarray, shape (N,)
+        Values, and their weights in the one distribution and in the other.
+    """
     kept = np.isfinite(values)
     order = np.argsort(values[kept])
     sums = [np.cumsum(each[kept][order]) for each in (weights, others)]

@@ -12,7 +12,7 @@ import pyvista as pv
 
 from vizlight.draw.cameras import axes_of, outermost
 from vizlight.looks import levels
-from vizlight.looks.framing import Inset, Strip, eye_on_body, eye_opposite
+from vizlight.looks.framing import OTHER, Inset, Strip, apart, eye_on_body, eye_opposite
 from vizlight.looks.recipes import fields, lines, surfaces
 from vizlight.looks.recipes.drawing import FACING, Layer
 from vizlight.looks.steps import Step
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vizlight._types import Array, Keywords, Vector
+    from vizlight.looks.contents import Named
     from vizlight.looks.framing import Viewpoint
     from vizlight.looks.recipes.drawing import Case, Drawing, Recipe
 
@@ -36,8 +37,9 @@ SHARES, WEIGHT = (0.58, 0.64, 0.7), 0.4
 #: Room between views as a share of the shorter side of the room, and for words above and below an
 #: inset in their height.
 GAP, ABOVE, BELOW = 0.03, 2.2, 2.6
-#: Least spread of the values in a section, in that of all, from which it is worth its place.
-WORTH = 0.3
+#: Least area of a section as a share of that of the box around the volume, and least diagonal of
+#: its box in that of this one.
+LEAST_AREA, LEAST_LONG = 0.15, 0.4
 #: Least width of lines in an inset, and what a section takes of the drawing of the main view.
 THINNEST = 1.0
 COLORS = ("scalars", "cmap", "clim", "nan_color", "log_scale")
@@ -82,12 +84,12 @@ def _insets(recipe: Recipe, case: Case) -> list[Inset]:
     if recipe is lines.lines:
         return _other_sides(case) if case.is_of_body else []
     if recipe is fields.flow:
-        return _sections(case)
+        return _section(case, of_flow=True)
     if recipe not in (surfaces.values, fields.lengths, fields.vectors) or case.array is None:
         return []
-    if case.contents.dimension == 3:
-        return _sections(case)
-    return _far_side(case)
+    if case.contents.dimension == 2:
+        return _far_side(case)
+    return [] if case.needed_array.role == "vectors" else _section(case)
 
 
 def _other_sides(case: Case) -> list[Inset]:
@@ -114,28 +116,32 @@ def _far_side(case: Case) -> list[Inset]:
     return [] if eye is None else [Inset(eye.toward, eye.up, eye.words)]
 
 
-def _sections(case: Case) -> list[Inset]:
-    """Return the section through the middle of a volume in which values differ most."""
-    array, mesh = case.needed_array, case.data
-    volume = mesh.run()
+def _section(case: Case, *, of_flow: bool = False) -> list[Inset]:
+    """Return the section through the middle of a volume that is large and shows most of its values.
+
+    That of a solid shows other values than its surface.
+    """
+    array, volume = case.needed_array, case.data.run()
     if array.role == "colors" or georeference.has_degrees(volume):
         return []
-    joined = case.wishes.joined(mesh, array)
-    values = _values(joined.run(), array.name)
-    spread = float(np.nanstd(values))
+    joined = case.wishes.joined(case.data, array)
     origin = [float(f"{x:.6g}") for x in volume.center]
-    best, largest = None, WORTH * spread
+    sizes, best, largest = np.array(volume.bounds_size), None, 0.0
     for axis in range(3):
         normal = tuple(float(i == axis) for i in range(3))
         section = Step("section", ".slice", joined, normal, origin=origin)
         cut = section.run()
-        if not cut.n_cells:
+        is_large = cut.area >= LEAST_AREA * np.delete(sizes, axis).prod()
+        if not cut.n_cells or not is_large or cut.length < LEAST_LONG * volume.length:
             continue
-        score = float(np.nanstd(_values(cut, array.name)))
-        if array.role == "vectors":
+        values = _values(cut, array)
+        score = float(np.nanstd(values)) * math.sqrt(cut.area)
+        if of_flow:
             rows = np.nan_to_num(np.asarray(cut[array.name], dtype=np.float64))
             along = np.linalg.norm(rows, axis=1).sum() or 1.0
             score *= 1 - float(np.abs(rows[:, axis]).sum() / along)
+        elif not _differ(cut, case.wishes.joined(case.surface, array).run(), array):
+            continue
         if score > largest:
             best, largest = (axis, normal, section), score
     if best is None:
@@ -148,8 +154,21 @@ def _sections(case: Case) -> list[Inset]:
     return [Inset(toward, up, name, mesh=section)]
 
 
-def _values(mesh: pv.DataSet, name: str) -> Array:
-    rows: Array = np.asarray(mesh[name], dtype=np.float64)
+def _differ(section: pv.PolyData, surface: pv.DataSet, array: Named) -> bool:
+    """Return whether a section through a solid has other values than its surface."""
+    areas, values = [], []
+    for mesh in (section, surface):
+        cells = mesh if array.of_cells else mesh.point_data_to_cell_data()
+        areas.append(mesh.compute_cell_sizes(length=False, volume=False).cell_data["Area"])
+        values.append(_values(cells, array))
+    counts = len(values[0]), len(values[1])
+    inside, outside = np.repeat([1.0, 0.0], counts), np.repeat([0.0, 1.0], counts)
+    every = np.concatenate(areas)
+    return apart(np.concatenate(values), every * inside, every * outside) > OTHER
+
+
+def _values(mesh: pv.DataSet, array: Named) -> Array:
+    rows: Array = np.asarray(mesh[array.name], dtype=np.float64)
     return rows if rows.ndim == 1 else np.linalg.norm(rows, axis=1)
 
 
@@ -250,7 +269,7 @@ def _of_section(case: Case, drawing: Drawing, section: Step, pixel: float) -> li
             lines = Step("", ".contour", section, *layer.mesh.arguments[1:], **layer.mesh.keywords)
             layers.append(replace(layer, mesh=lines))
     rim = Step("rim", "files.borders", section)
-    if array.role == "vectors":
+    if case.question == "heading":
         strokes = fields.strokes_on(case, section, drawing.camera, pixel)
         layers += [strokes] if strokes is not None else []
     return [*layers, *case.strokes([rim] if rim.run().n_cells else [])]
