@@ -163,7 +163,7 @@ def beside(camera: pv.Camera, /, *, right: float = 0.0, below: float = 0.0) -> p
     half = float(camera.parallel_scale)
     eye = axes_of(np.negative(camera.direction).tolist(), camera.up)
     shift = half / 2 * (right * eye[0] - below * eye[1])
-    wide = camera.copy()
+    wide: pv.Camera = camera.copy()  # type: ignore[no-untyped-call]
     wide.focal_point = tuple(np.asarray(camera.focal_point) + shift)
     wide.position = tuple(np.asarray(camera.position) + shift)
     wide.parallel_projection = True

@@ -213,7 +213,7 @@ def _rises_along_y(mesh: pv.DataSet) -> bool:
     rows = _finite(np.column_stack([data[warm], mesh.points[:, 1:]]))
     if len(rows) < 2 or not np.ptp(rows, axis=0).all():
         return False
-    along_y, along_z = np.corrcoef(rows.T)[0, 1:]
+    along_y, along_z = np.atleast_2d(np.corrcoef(rows.T))[0, 1:]
     return bool(along_y > RISING and abs(along_z) < LEVEL)
 
 

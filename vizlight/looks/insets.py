@@ -11,12 +11,13 @@ import numpy as np
 import pyvista as pv
 
 from vizlight.draw.cameras import axes_of, outermost
+from vizlight.draw.margins import LETTERS
 from vizlight.looks import levels
 from vizlight.looks.framing import OTHER, Inset, Strip, apart, eye_on_body, eye_opposite
 from vizlight.looks.recipes import fields, lines, surfaces
 from vizlight.looks.recipes.drawing import FACING, Layer
 from vizlight.looks.steps import Step
-from vizlight.looks.wishes import LETTERS, SMALL, even_light
+from vizlight.looks.wishes import SMALL, even_light
 from vizlight.mesh import georeference, meaning
 from vizlight.reading import brains, molecules
 
@@ -175,10 +176,8 @@ def _values(mesh: pv.DataSet, array: Named) -> Array:
 def _strip(case: Case, eye: Viewpoint, insets: Sequence[Inset]) -> Strip:
     """Return the place of insets in which the main view and they are largest."""
     room, mesh = np.array(case.wishes.room), case.data.run()
-    main, *others = (
-        _size(mesh if view is eye or view.mesh is None else view.mesh.run(), view)
-        for view in (eye, *insets)
-    )
+    main = _size(mesh, eye)
+    others = [_size(mesh if it.mesh is None else it.mesh.run(), it) for it in insets]
     best, largest = None, -np.inf
     for share, is_below in itertools.product(SHARES, (False, True)):
         scale = float(np.min(room * ((1.0, share) if is_below else (share, 1.0)) / main))
@@ -205,7 +204,8 @@ def _cell(
 def _size(mesh: pv.DataSet, view: Viewpoint | Inset) -> Array:
     """Return the width and the height of a mesh in a view, above 0."""
     flat = outermost(mesh, view.toward, up=view.up) @ axes_of(view.toward, view.up)[:2].T
-    return np.maximum(np.ptp(flat, axis=0), 1e-6 * mesh.length)
+    size: Array = np.maximum(np.ptp(flat, axis=0), 1e-6 * mesh.length)
+    return size
 
 
 def drawn(case: Case, drawing: Drawing) -> Drawing:

@@ -41,8 +41,6 @@ from vizlight.writing import FORMATS
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import ArrayLike
-
     from vizlight._types import Array, Foreign, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.ranges import Range
@@ -418,7 +416,7 @@ class Case:
         ]
         return ", ".join([place, *words])
 
-    def ends_of_body(self, toward: ArrayLike, up: ArrayLike) -> Sequence[str]:
+    def ends_of_body(self, toward: Sequence[float] | Array, up: Sequence[float]) -> Sequence[str]:
         """Return the letters of the sides of a body at the left and the right of a view.
 
         They are L, R, P, A, I and S; none where no axis runs across the picture, and of
