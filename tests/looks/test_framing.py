@@ -69,6 +69,18 @@ def test_a_hollow_is_looked_into():
     assert eye(half).toward[1] != 0
 
 
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_the_side_that_shows_most_kinds_is_seen(sign):
+    # Small parts on one side of a block.
+    parts = [pv.Box((0, 8, 0, 6, 0, 5))]
+    parts += [pv.Sphere(radius=0.6, center=(x, 3 + 3.2 * sign, 2.5)) for x in (1.5, 4, 6.5)]
+    for kind, part in enumerate(parts):
+        part.clear_data()
+        part.cell_data["part"] = np.full(part.n_cells, kind)
+    whole = pv.merge(parts, merge_points=False).extract_surface(algorithm="dataset_surface")
+    assert eye_of(whole, Contents(whole), "part").toward[1] * sign > 0.3
+
+
 def test_the_side_that_shows_most_of_the_values_is_seen():
     box = pv.Box(bounds=(0, 1, 0, 1, 0, 1), level=8).triangulate()
     box.clear_data()
@@ -81,7 +93,7 @@ def test_the_side_that_shows_most_of_the_values_is_seen():
         assert toward[axis] * sign > 0.3
     # A few large faces hide what is behind them too.
     coarse = pv.Cube().triangulate()
-    _, corners = framing._triangles(coarse)
+    _, corners, _ = framing._triangles(coarse)
     way, places = np.array([0.8, 0.5, 0.33]), framing._places(corners)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     assert np.array_equal(

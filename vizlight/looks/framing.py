@@ -191,7 +191,9 @@ def eye_of(
     if contents.flat_axis is not None:
         return _above(mesh, contents.flat_axis)
     if mesh.n_cells and mesh.max_cell_dimensionality == 2 and isinstance(mesh, pv.PolyData):
-        return _of_surface(mesh, shown, is_model)
+        array = None if shown is None else contents.named(shown)
+        has_kinds = array is not None and array.role == "kinds"
+        return _of_surface(mesh, shown, is_model=is_model, has_kinds=has_kinds)
     points = _finite(mesh.points)
     extent = np.ptp(points, axis=0) if len(points) else points
     if contents.dimension == 3 and len(extent) == 3 and extent.min() < LAYER * np.median(extent):
@@ -255,8 +257,10 @@ def _above(mesh: pv.DataSet, axis: int) -> Viewpoint:
     return Viewpoint(toward, up, True, words)
 
 
-def _of_surface(surface: pv.PolyData, shown: str | None, is_model: bool) -> Viewpoint:
-    faces, corners = _triangles(surface)
+def _of_surface(
+    surface: pv.PolyData, shown: str | None, *, is_model: bool, has_kinds: bool
+) -> Viewpoint:
+    corner_ids, corners, faces = _triangles(surface)
     if not len(corners):
         return _of_points(_finite(surface.points))
     corners, normals = _with_normals(corners)
@@ -268,13 +272,13 @@ def _of_surface(surface: pv.PolyData, shown: str | None, is_model: bool) -> View
             toward = -toward
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.9 else (0.0, 0.0, 1.0)
         return Viewpoint(_vector(toward), up, False, "along its mean normal")
-    values, edges = _values(surface, shown, faces), _creases(surface)
+    values, edges = _values(surface, shown, corner_ids, faces), _creases(surface)
     has_y_up = not _lies_along_y(corners, areas) if is_model else stands_along_y(corners, areas)
     if not has_y_up:
-        return _around(corners, normals, edges, _ways(), values)
+        return _around(corners, normals, edges, _ways(), values, has_kinds=has_kinds)
     # As if y were z, and back.
     corners, normals, edges = (rows @ Y_TO_Z.T for rows in (corners, normals, edges))
-    eye = _around(corners, normals, edges, _ways(), values)
+    eye = _around(corners, normals, edges, _ways(), values, has_kinds=has_kinds)
     return _with_y_up(eye)
 
 
@@ -371,8 +375,8 @@ def side_of(surface: pv.PolyData, shown: str) -> Viewpoint | None:
         None for surfaces that are not flattened along x, y or z, that are open, or that have much
         the same values on both sides.
     """
-    faces, corners = _triangles(surface)
-    values = _values(surface, shown, faces)
+    corner_ids, corners, faces = _triangles(surface)
+    values = _values(surface, shown, corner_ids, faces)
     if values is None or len(values) < SQUARES**2:
         return None
     sizes = np.ptp(corners.reshape(-1, 3), axis=0)
@@ -408,12 +412,23 @@ def _creases(surface: pv.PolyData) -> Array:
     return ends / (np.abs(surface.points).max() or 1.0)
 
 
-def _values(surface: pv.PolyData, shown: str | None, faces: Indices) -> Array | None:
-    """Return the values of an array at the first corners of faces, None without values."""
-    if shown is None or shown not in surface.point_data:
+def _values(
+    surface: pv.PolyData, shown: str | None, corner_ids: Indices, faces: Indices
+) -> Array | None:
+    """Return the rows of an array at faces, or at their first corners, None without an array."""
+    if shown is None:
         return None
-    rows: Array = np.asarray(surface.point_data[shown], dtype=np.float64)
-    return rows[faces[:, 0]] if rows.ndim == 1 else None
+    if shown in surface.point_data:
+        at_corners: Array = np.asarray(surface.point_data[shown], dtype=np.float64)[
+            corner_ids[:, 0]
+        ]
+        return at_corners
+    if shown in surface.cell_data:
+        # Cells of points and lines come before faces.
+        first = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
+        of_cells: Array = np.asarray(surface.cell_data[shown], dtype=np.float64)[first + faces]
+        return of_cells
+    return None
 
 
 def eye_around(surface: pv.PolyData, *, cut: bool = False) -> Viewpoint:
@@ -426,7 +441,7 @@ def eye_around(surface: pv.PolyData, *, cut: bool = False) -> Viewpoint:
     cut : bool, default: False
         Whether its box cuts it.
     """
-    _, corners = _triangles(surface)
+    _, corners, _ = _triangles(surface)
     if not len(corners):
         return _of_points(_finite(surface.points))
     corners, normals = _with_normals(corners)
@@ -476,9 +491,17 @@ def eye_on_body(mesh: pv.DataSet) -> Viewpoint:
 
 
 def _around(
-    corners: Array, normals: Array, edges: Array, ways: list[Array], values: Array | None = None
+    corners: Array,
+    normals: Array,
+    edges: Array,
+    ways: list[Array],
+    values: Array | None = None,
+    *,
+    has_kinds: bool = False,
 ) -> Viewpoint:
     """Return the eye from which most of some triangles is seen, of their values, and of creases."""
+    if values is not None and values.ndim > 1:
+        values = None
     places = _places(corners)
     areas = np.linalg.norm(normals, axis=1)
     lengths, middles = np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1), edges.mean(axis=1)
@@ -487,7 +510,7 @@ def _around(
     spread = np.cov(corners.mean(axis=1).T, aweights=areas) if areas.sum() > 0 else np.eye(3)
     scores = []
     for way in ways:
-        score = _seen(corners, places, normals, areas, way, values)
+        score = _seen(corners, places, normals, areas, way, values, has_kinds=has_kinds)
         if whole > 0:
             front = _in_front(np.concatenate([middles, places]), len(middles), way)
             score *= 1 + CREASED * float(lengths[front].sum()) / whole
@@ -496,7 +519,9 @@ def _around(
     return Viewpoint(_vector(best), (0.0, 0.0, 1.0), False, "from where most of it is seen")
 
 
-def eye_opposite(surface: pv.PolyData, eye: Viewpoint, shown: str) -> Viewpoint | None:
+def eye_opposite(
+    surface: pv.PolyData, eye: Viewpoint, shown: str, *, has_kinds: bool
+) -> Viewpoint | None:
     """Return the eye that sees most of what another one does not see of a closed surface.
 
     Parameters
@@ -506,14 +531,17 @@ def eye_opposite(surface: pv.PolyData, eye: Viewpoint, shown: str) -> Viewpoint 
     eye : Viewpoint
         The other eye.
     shown : str
-        Name of a point array.
+        Name of an array.
+    has_kinds : bool
+        Whether it is one of kinds.
 
     Returns
     -------
     Viewpoint or None
-        None for open surfaces, and where values or the course of vectors are alike on both sides.
+        None for open surfaces, and where values, or the lengths of vectors, are alike on both
+        sides, or all kinds are seen.
     """
-    faces, corners = _triangles(surface)
+    corner_ids, corners, faces = _triangles(surface)
     if not len(corners):
         return None
     corners, normals = _with_normals(corners)
@@ -522,9 +550,12 @@ def eye_opposite(surface: pv.PolyData, eye: Viewpoint, shown: str) -> Viewpoint 
         return None
     places, toward, up = _places(corners), np.asarray(eye.toward), np.asarray(eye.up)
     front = _in_front(places, len(corners), toward)
-    rows = np.asarray(surface.point_data[shown], dtype=np.float64)[faces[:, 0]]
-    values = rows if rows.ndim == 1 else np.linalg.norm(rows, axis=1)
-    if apart(values, areas * front, areas * ~front) < OTHER:
+    values = _values(surface, shown, corner_ids, faces)
+    if values is None:
+        return None
+    values = values if values.ndim == 1 else np.linalg.norm(values, axis=1)
+    all_seen = np.isin(values, values[front]).all()
+    if all_seen if has_kinds else apart(values, areas * front, areas * ~front) < OTHER:
         return None
     toward, up = toward / np.linalg.norm(toward), up / np.linalg.norm(up)
     height = (toward @ up) * up
@@ -585,11 +616,19 @@ def _of_points(points: Array, vectors: Array | None = None) -> Viewpoint:
 
 
 def _seen(
-    corners: Array, places: Array, normals: Array, areas: Array, way: Array, values: Array | None
+    corners: Array,
+    places: Array,
+    normals: Array,
+    areas: Array,
+    way: Array,
+    values: Array | None,
+    *,
+    has_kinds: bool,
 ) -> float:
     """Return the area that an eye at infinity sees, by how much of a picture it fills.
 
-    Of values, the area counts up to twice where their spread in the picture is that of all.
+    Of values, the area counts up to twice where their spread in the picture is that of all, and of
+    kinds by the share of them that is seen.
     """
     right, up = _plane(way)
     # Open surfaces are seen from both sides.
@@ -600,7 +639,11 @@ def _seen(
         # Faces without a value show nothing.
         front = front * np.isfinite(values)
         seen = float(front.sum())
-        seen *= 1 + min(_spread(values, front * cosines) / (_spread(values, areas) or 1.0), 1.0)
+        if has_kinds:
+            seen *= len(np.unique(values[front > 0])) / len(np.unique(values))
+        else:
+            spread = _spread(values, front * cosines) / (_spread(values, areas) or 1.0)
+            seen *= 1 + min(spread, 1.0)
     rows = corners.reshape(-1, 3)
     tall = max(np.ptp(rows @ up), np.ptp(rows @ right) / ASPECT)
     return seen * math.sqrt((front * cosines).sum()) / (float(tall) or 1.0)
@@ -658,17 +701,17 @@ def seen_triangles(surface: pv.PolyData, toward: Vector) -> Indices:
     -------
     ndarray of int, shape (SEEN, 3), or (0, 3) where nothing is seen
     """
-    faces, corners = _triangles(surface)
+    corner_ids, corners, _ = _triangles(surface)
     way = np.asarray(toward, dtype=np.float64) / np.linalg.norm(toward)
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    if not len(faces):
-        return faces
+    if not len(corner_ids):
+        return corner_ids
     share = np.abs(normals @ way) * _in_front(_places(corners), len(corners), way)
     total = share.sum()
     if not total > 0:
-        return faces[:0]
-    chosen: Indices = np.random.default_rng(0).choice(len(faces), SEEN, p=share / total)
-    return faces[chosen]
+        return corner_ids[:0]
+    chosen: Indices = np.random.default_rng(0).choice(len(corner_ids), SEEN, p=share / total)
+    return corner_ids[chosen]
 
 
 def _ways(azimuths: range = AZIMUTHS, altitudes: tuple[float, ...] = ALTITUDES) -> list[Array]:
@@ -688,8 +731,11 @@ def _plane(way: Array) -> tuple[Array, Array]:
     return right, np.cross(way, right)
 
 
-def _triangles(surface: pv.PolyData) -> tuple[Indices, Array]:
-    """Return three corners of some faces: their numbers, (count, 3), and places, (count, 3, 3)."""
+def _triangles(surface: pv.PolyData) -> tuple[Indices, Array, Indices]:
+    """Return three corners of some faces, and the numbers of these, shape (count,).
+
+    The corners are given by their numbers, (count, 3), and places, (count, 3, 3).
+    """
     ids, ends = connectivity(surface.GetPolys())
     sizes = np.diff(ends)
     faces = np.flatnonzero(sizes >= 3)
@@ -698,7 +744,7 @@ def _triangles(surface: pv.PolyData) -> tuple[Indices, Array]:
     corners: Array = np.asarray(surface.points, dtype=np.float64)[places]
     # A corner that is not finite takes its face with it.
     kept = np.isfinite(corners).all(axis=(1, 2))
-    return places[kept], corners[kept]
+    return places[kept], corners[kept], faces[kept]
 
 
 def _finite(values: ArrayLike) -> Array:

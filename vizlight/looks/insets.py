@@ -111,9 +111,8 @@ def _far_side(case: Case) -> list[Inset]:
         return []
     if brains.hemisphere(surface) or case.is_isosurface or molecules.PLACES in surface.field_data:
         return []
-    if array.name not in surface.point_data:
-        surface = surface.cell_data_to_point_data()
-    eye = eye_opposite(surface, case.eye(case.surface), array.name)
+    has_kinds = array.role == "kinds"
+    eye = eye_opposite(surface, case.eye(case.surface), array.name, has_kinds=has_kinds)
     return [] if eye is None else [Inset(eye.toward, eye.up, eye.words)]
 
 

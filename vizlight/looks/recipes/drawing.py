@@ -382,7 +382,7 @@ class Case:
         if self.box is not None:
             return eye_around(self.surface.run(), cut=True)
         array = self.array
-        shown = None if array is None or array.role in ("kinds", "colors") else array.name
+        shown = None if array is None or array.role == "colors" else array.name
         is_model = not MODELS.isdisjoint(map(str.lower, path_of(self.data).suffixes))
         return eye_of(mesh.run(), self.contents, shown, is_model=is_model)
 
