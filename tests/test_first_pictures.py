@@ -1,6 +1,5 @@
 """First pictures of small meshes of twelve kinds change with their data; faults are found."""
 
-
 import numpy as np
 import pytest
 import pyvista as pv
