@@ -363,6 +363,8 @@ def test_a_ball_tells_normals_in_its_own_frame_wherever_the_eye_is():
 def test_what_has_no_key_is_not_read_and_said_so():
     plotter = pv.Plotter(off_screen=True, window_size=(90, 60))
     plotter.add_mesh(pv.PolyData(np.eye(3)), color="red")
+    # What cannot be picked is no data.
+    plotter.add_mesh(sheet(9), scalars="height", pickable=False, show_scalar_bar=False)
     found = plotter.vizlight.legibility()
     assert found.pixels == 0
     assert found.notes == ("nothing that is shown has a key by which it could be read",)

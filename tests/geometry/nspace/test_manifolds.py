@@ -188,6 +188,13 @@ def test_tori_have_no_seam_and_orthonormal_frames_along_their_cells(radii):
     assert along.min() > 0.8
 
 
+test_bad_frames = refusals(
+    lambda k: manifolds.Manifold(np.zeros((8, 3)), np.zeros((8, k, 3)), np.zeros((1, 2**k), int)),
+    (0, r"frame: expected shape \(8, k, 3\) with k < 3"),
+    (3, r"frame: expected shape \(8, k, 3\) with k < 3"),
+)
+
+
 test_bad_radii = refusals(
     lambda radii: manifolds.torus(*radii),
     ((), "radii: expected 1 to 3 radii, got 0"),
