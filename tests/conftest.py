@@ -71,6 +71,14 @@ def own_account(monkeypatch):
         monkeypatch.setattr(module.walk, "missed", 0.0)
 
 
+@pytest.fixture(autouse=True)
+def closed_plotters():
+    """Close the plotters of a test after it."""
+    yield
+    if "pyvista" in sys.modules:
+        sys.modules["pyvista"].close_all()
+
+
 @pytest.fixture
 def few_strokes(monkeypatch):
     """Draw strokes and streamlines further apart than in pictures, in a fraction of the time."""

@@ -19,12 +19,3 @@ def faces_around(cells):
     size = cells.shape[1]
     groups = {2: [(0,), (1,)], 4: EDGES.get(size, []), 8: FACES}[size]
     return np.unique(pieces(cells, groups), axis=0, return_counts=True)[1]
-
-
-def euler(cells):
-    size = cells.shape[1]
-    edges = len(np.unique(pieces(cells, EDGES[size]), axis=0))
-    number = len(np.unique(cells)) - edges
-    if size == 4:
-        return number + len(cells)
-    return number + len(np.unique(pieces(cells, FACES), axis=0)) - len(cells)

@@ -62,7 +62,6 @@ def drawn_plain(mesh, **how):
     plotter.add_mesh(mesh, **{"color": "black", "show_scalar_bar": False} | how)
     plotter.camera = from_above(sheet(20))
     picture, camera = plotter.screenshot(return_img=True) / 255, plotter.camera.copy()
-    plotter.close()
     return picture, camera
 
 

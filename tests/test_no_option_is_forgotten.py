@@ -270,7 +270,6 @@ def live(scene, then=None):
         plotter.vizlight.set_scene(actor, then.replace(view=None))
         plotter.render()
         picture = plotter.screenshot(return_img=True)
-    plotter.close()
     return picture.astype(int)
 
 

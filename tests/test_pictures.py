@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 import pyvista as pv
 from lamps import SHINY, far
+from shapes import clifford_torus
 
 import vizlight
-from studies import _shapes as manifolds
 from vizlight import DepthCue, Light, Material, Scene, View, render, testing
+from vizlight.geometry import manifolds
 from vizlight.model import highlights
 
 pytestmark = pytest.mark.opengl
@@ -186,7 +187,11 @@ def turning():
 
 
 def complex_curve():
-    curve = manifolds.complex_curve(lambda z: z**3 / 3 - z / 2, resolution=120)
+    def place(x, y):
+        w = (x + 1j * y) ** 3 / 3 - (x + 1j * y) / 2
+        return x, y, w.real, w.imag
+
+    curve = manifolds.parametric(place, [(-1, 1)] * 2, 4, resolution=120, closed=False)
     scene = far((-0.4, -0.9, 0.9, 0.4), (0.5, -1, 0.7, 0))
     lit = vizlight.manifold(curve, scene=scene, rotation=("xw", 1.0))
     camera = render.camera_on(lit.bounds, (0.5, -1, 0.7), zoom=1.0)
@@ -194,9 +199,7 @@ def complex_curve():
 
 
 def field_in_4_space():
-    torus = vizlight.manifold(
-        manifolds.clifford_torus(resolution=128), rotation=("xw", 0.15), distance=1.6
-    )
+    torus = vizlight.manifold(clifford_torus(128), rotation=("xw", 0.15), distance=1.6)
     frame = np.asarray(torus["frame"]).reshape(-1, 2, 4)
     torus["field"] = frame[:, 0] + frame[:, 1]
     scene = far((0.5, -0.7, 0.6, 0.2), (0.3, -1, 0.8, 0))

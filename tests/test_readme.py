@@ -68,7 +68,6 @@ def test_every_python_block_runs(path, tmp_path, monkeypatch):
     assert list(tmp_path.glob("*.png"))
     if path == README:
         assert float(space["lit"]["luminance"].max()) > 0.5
-    pv.close_all()
 
 
 def mended(names):

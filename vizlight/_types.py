@@ -43,7 +43,6 @@ Bools: TypeAlias = NDArray[np.bool_]
 Indices: TypeAlias = NDArray[np.intp]
 #: Real or complex numbers; complex ones appear in derivatives by the complex step.
 Numbers: TypeAlias = NDArray[np.number]
-Complex: TypeAlias = NDArray[np.complexfloating]
 
 Vector: TypeAlias = tuple[float, ...]
 VectorLike: TypeAlias = Sequence[float] | Array

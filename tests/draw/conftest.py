@@ -1,17 +1,9 @@
-"""A browser for the tests of pages, and plotters and pages that are closed in the end."""
+"""A browser for the tests of pages, and pages that are closed in the end."""
 
 import browsers
 import pytest
-import pyvista as pv
 
 import vizlight
-
-
-@pytest.fixture(autouse=True)
-def _closed():
-    """Close the plotters of a test after it."""
-    yield
-    pv.close_all()
 
 
 @pytest.fixture(scope="module")

@@ -1,12 +1,11 @@
 """Cameras that see all of a mesh: where they stand, what is up, what is clipped."""
 
-import tracemalloc
-
 import numpy as np
 import pytest
 import pyvista as pv
 from vectors import unit
 
+from studies import peak_memory
 from vizlight import render
 
 
@@ -119,11 +118,7 @@ def test_a_camera_copies_no_mesh():
     cloud.points[0] = 0
     for mesh in (cloud, pv.ImageData(dimensions=(160, 160, 160))):
         mesh.bounds  # noqa: B018 - which VTK keeps
-        tracemalloc.start()
-        render.camera_on(mesh)
-        _, peak = tracemalloc.get_traced_memory()
-        tracemalloc.stop()
-        assert peak < 2.5 * 65_536 * 10 * 8
+        assert peak_memory(lambda mesh=mesh: render.camera_on(mesh)) < 2.5 * 65_536 * 10 * 8
 
 
 @pytest.mark.parametrize("parallel", [False, True])

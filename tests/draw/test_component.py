@@ -9,10 +9,9 @@ import pytest
 import pyvista as pv
 from fields import half_known
 from lamps import SHINY
-from shapes import ball
+from shapes import ball, clifford_torus
 
 import vizlight
-from studies import _shapes as manifolds
 from vizlight import DepthCue, Light, Material, Scene, View, presets
 from vizlight.draw import component
 from vizlight.draw.live import COLORS, LUMINANCE, scene_of
@@ -152,7 +151,7 @@ LIT = {
         ball(), VIEWED, tangents="around", seeds=20, conditioned=True
     ),
     "after": lambda: vizlight.manifold(
-        manifolds.clifford_torus(resolution=24), scene=VIEWED, distance=2.0, light="after"
+        clifford_torus(24), scene=VIEWED, distance=2.0, light="after"
     ),
     "shadow": lambda: vizlight.relief_shadow(ball(16).triangulate(), VIEWED, lit=True),
 }
@@ -191,7 +190,7 @@ def test_a_field_in_coloured_light_is_drawn_with_colours_of_data(plotter):
 def test_manifolds_of_four_space_keep_their_eye_or_follow_the_camera(plotter):
     view = View(direction=(0, 0, 1, 1))
     scene = Scene(lights=Light(direction=(1, 1, 1, 0)), view=view, material=SHINY)
-    torus = manifolds.clifford_torus(resolution=24)
+    torus = clifford_torus(24)
     lit = vizlight.manifold(torus, scene=scene, distance=2.0)
     actor = plotter.vizlight.add_mesh(lit)
     assert "4-space" in plotter.vizlight.explain(actor)

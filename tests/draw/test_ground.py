@@ -64,9 +64,7 @@ def drawn(mesh, scene, then=None, light="fragments"):
         plotter.screenshot(return_img=True)
         plotter.vizlight.set_scene(actor, then)
         plotter.render()
-    picture = plotter.screenshot(return_img=True)
-    plotter.close()
-    return picture
+    return plotter.screenshot(return_img=True)
 
 
 @pytest.mark.parametrize("name", LAMPS)

@@ -479,7 +479,6 @@ def test_lines_of_a_page_have_the_halos_and_widths_of_the_picture(opened, tmp_pa
     plotter.enable_parallel_projection()
     expected = np.asarray(plotter.screenshot(return_img=True), dtype=np.int16)
     path = plotter.vizlight.export_html(tmp_path / "lines.html", key=False)
-    plotter.close()
     page, _ = opened(path)
     # The gaps of the halo are 0.7 % of the picture.
     assert np.mean(np.abs(browsers.shot(page) - expected).max(axis=2) > 60) < 0.003
@@ -524,7 +523,6 @@ def test_strokes_of_a_page_move_as_those_of_a_movie(opened, tmp_path):
         lines["width"] = moved_widths(lines, share)
         plotter.render()
         movie.append(np.asarray(plotter.screenshot(return_img=True), dtype=np.int16))
-    plotter.close()
     for share, own, other in zip(shares, movie, movie[::-1], strict=True):
         page.evaluate(f"() => {{ vizlight.meshes[0].move({share}); vizlight.draw(); }}")
         # The borders are smooth.

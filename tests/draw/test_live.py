@@ -9,7 +9,6 @@ from lamps import NEAR, SHINY, far, shiny
 from vectors import parts, unit
 
 import vizlight
-from studies import _shapes as manifolds
 from vizlight import DepthCue, Light, Material, Scene, View
 
 pytestmark = pytest.mark.opengl
@@ -320,7 +319,7 @@ def strands():
 
 
 def manifold():
-    return vizlight.manifold(manifolds.clifford_torus(resolution=12), distance=2.0)
+    return vizlight.manifold(shapes.clifford_torus(12), distance=2.0)
 
 
 FALLBACKS = {

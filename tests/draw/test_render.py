@@ -395,7 +395,6 @@ def test_a_bar_beside_several_panels_takes_the_width_of_none():
         any(prop.IsA("vtkScalarBarActor") for prop in renderer.actors.values())
         for renderer in plotter.renderers
     ]
-    plotter.close()
     widths = np.array([right - left for left, _, right, _ in views])
     assert np.ptp(widths[np.logical_not(bars)]) < 1e-9
     assert widths[bars] == pytest.approx(render.BAR_COLUMN * widths[0])

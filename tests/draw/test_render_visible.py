@@ -25,8 +25,7 @@ def test_the_share_is_that_of_the_square():
     plotter.camera.parallel_projection = True
     plotter.camera.parallel_scale = 1
     plotter.add_text("no data")
-    share = render.share_of_data(plotter)
-    plotter.close()
+    share = render.share_of_data(plotter, plotter.screenshot(return_img=True))
     assert share == pytest.approx(0.25, abs=0.02)
 
 
@@ -36,8 +35,7 @@ def test_keys_are_no_data():
     plotter.add_mesh(pv.Sphere(), color="red")
     plotter.camera.position, plotter.camera.focal_point = (9, 0, 0), (10, 0, 0)
     plotter.reset_camera_clipping_range()
-    share = render.share_of_data(plotter)
-    plotter.close()
+    share = render.share_of_data(plotter, plotter.screenshot(return_img=True))
     assert share == 0
 
 

@@ -387,9 +387,7 @@ def drawn(line, *, ssaa=False, camera=None, **options):
     plotter.vizlight.add_mesh(line, scene=WHITE, **options)
     plotter.camera = looking_down(parallel=True) if camera is None else camera
     plotter.reset_camera_clipping_range()
-    picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
-    plotter.close()
-    return picture
+    return np.asarray(plotter.screenshot(return_img=True), dtype=float)[:, :, 0] / 255
 
 
 @pytest.mark.parametrize("light", ["fragments", "points"])
@@ -455,7 +453,6 @@ def test_plain_lines_are_whole_on_the_surface_that_they_lie_on():
         plotter.camera = render.camera_on(plane, (0.3, 0.4, 1.0))
         front = np.asarray(plotter.screenshot(return_img=True), dtype=float)
         dark.append((255 - front).sum())
-        plotter.close()
         assert vtkMapper.GetResolveCoincidentTopology() == before
     assert dark[0] > 0.95 * dark[1]
 
@@ -466,7 +463,6 @@ def test_points_are_as_large_as_asked(lighting):
     point = pv.PolyData(np.zeros((1, 3)))
     plotter.vizlight.add_mesh(point, color="black", point_size=20, lighting=lighting)
     picture = np.asarray(plotter.screenshot(return_img=True), dtype=float)
-    plotter.close()
     # A square, or a disc where the driver rounds points.
     assert 0.95 * np.pi * 100 < (1 - picture[:, :, 0] / 255).sum() < 410
 
@@ -480,4 +476,3 @@ def test_colours_that_hide_nearly_all_are_opaque():
     opaque, glass = (plotter.vizlight.add_mesh(ball, scalars=name) for name in ("RGBA", "glass"))
     assert opaque.GetForceOpaque()
     assert not glass.GetForceOpaque()
-    plotter.close()

@@ -4,15 +4,16 @@ import math
 
 import numpy as np
 import pytest
+from shapes import torus_curve
 
 import vizlight
-from studies import _shapes as manifolds
 from vizlight import Light, Material, Scene
+from vizlight.geometry import manifolds
 
 LIGHT = np.array([0.7, 0.6, 0.38, 0.0])
 #: The curve advances as fast along one circle as along the other.
 SHAPES = {
-    1: manifolds.torus_curve(2.025, r1=1.5, r2=0.75, resolution=6000),
+    1: torus_curve(2.025, 40, (1.5, 0.75), 6000),
     2: manifolds.torus(1.5, 0.75, resolution=96),
 }
 

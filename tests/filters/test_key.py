@@ -173,7 +173,6 @@ def test_words_may_have_any_letters(tmp_path):
     plotter.vizlight.add_mesh(plane, scalars="k", cmap=table, show_scalar_bar=False)
     plotter.vizlight.add_key(question="value", cmap=table, title="Température (m²/s²)")
     plotter.screenshot(tmp_path / "a.png")
-    plotter.close()
 
 
 @pytest.mark.parametrize("options", [{}, {"below_range_color": "gray"}, {"log_scale": True}])

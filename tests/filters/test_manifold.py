@@ -5,20 +5,20 @@ import pytest
 import pyvista as pv
 from lamps import far
 from refusals import refusals
+from shapes import klein_bottle, sphere3, torus_curve
 
 import vizlight
-from studies import _shapes as manifolds
 from vizlight import Light, Scene, View
+from vizlight.geometry import manifolds
 
 
 @pytest.mark.parametrize(
     ("shape", "kind", "cells"),
     [
-        (manifolds.torus_curve(3, resolution=50), pv.PolyData, {pv.CellType.LINE: 50}),
+        (torus_curve(3), pv.PolyData, {pv.CellType.LINE: 50}),
         (manifolds.torus(1.0, resolution=9), pv.PolyData, {pv.CellType.LINE: 9}),
-        (manifolds.klein_bottle(resolution=(6, 5)), pv.PolyData, {pv.CellType.QUAD: 30}),
-        (manifolds.veronese(resolution=3), pv.PolyData, {pv.CellType.QUAD: 27}),
-        (manifolds.sphere3(resolution=2), pv.UnstructuredGrid, {pv.CellType.HEXAHEDRON: 64}),
+        (klein_bottle(6, 5), pv.PolyData, {pv.CellType.QUAD: 30}),
+        (sphere3(2), pv.UnstructuredGrid, {pv.CellType.HEXAHEDRON: 64}),
     ],
 )
 def test_cells_and_arrays(shape, kind, cells):
@@ -37,7 +37,7 @@ def test_cells_and_arrays(shape, kind, cells):
 
 @pytest.mark.parametrize(
     ("shape", "name"),
-    [(manifolds.klein_bottle(resolution=8), "a.vtp"), (manifolds.sphere3(resolution=2), "a.vtu")],
+    [(klein_bottle(8, 8), "a.vtp"), (sphere3(2), "a.vtu")],
 )
 def test_every_array_survives_a_file(shape, name, tmp_path):
     mesh = vizlight.manifold(shape, rotation=("xw", 0.4))
@@ -50,12 +50,9 @@ def test_every_array_survives_a_file(shape, name, tmp_path):
 
 def test_every_shape_is_lit_in_its_own_space():
     for shape in (
-        manifolds.torus_curve(3, resolution=50),
-        manifolds.hopf_fibres(fibres=3, resolution=8),
-        manifolds.klein_bottle(resolution=8),
-        manifolds.veronese(resolution=3),
-        manifolds.complex_curve(np.exp, resolution=5),
-        manifolds.sphere3(resolution=2),
+        torus_curve(3),
+        klein_bottle(8, 8),
+        sphere3(2),
         manifolds.torus(1.0, 1.0, 1.0, resolution=4),
     ):
         toward = np.arange(1.0, shape.n + 1)

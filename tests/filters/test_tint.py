@@ -66,7 +66,6 @@ def drawn_by_pyvista(mesh, name, options):
     values = np.array(mapper.dataset.point_data[mapper.array_name], dtype=float)
     mapped = [mapper.lookup_table.map_value(value) for value in values]
     colors = np.rint(255 * np.array(mapped)).astype(np.uint8)
-    plotter.close()
     return colors[:, :3]
 
 

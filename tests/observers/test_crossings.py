@@ -56,7 +56,6 @@ def shot(mesh, *, ours=True, light=None, view=(0, 0, 1), parallel=True, **how):
         plotter.add_mesh(mesh, show_scalar_bar=False, **({"color": "tan", "lighting": False} | how))
     plotter.camera = camera_on(mesh, view, aspect=1.5, parallel=parallel)
     picture, camera = plotter.screenshot(return_img=True), plotter.camera.copy()
-    plotter.close()
     return picture, camera
 
 
@@ -268,7 +267,6 @@ def test_lines_behind_a_surface_have_no_crossings():
     plotter.add_mesh(pv.Plane(center=(1, 2, 1), i_size=3, j_size=6), color="red")
     plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
     found = plotter.vizlight.legibility(samples=256, size_mm=SIZE_MM).order
-    plotter.close()
     assert found.samples == 12
 
 
@@ -281,7 +279,6 @@ def test_lines_of_a_diameter_are_as_wide_as_they_are_drawn(parallel):
     plotter.camera = camera_on(mesh, (0.1, 0.1, 1), aspect=1.5, parallel=parallel)
     found = plotter.vizlight.legibility(samples=256, size_mm=2 * SIZE_MM)
     drawn = np.asarray(plotter.screenshot(return_img=True))
-    plotter.close()
     assert found.pixels == pytest.approx(np.count_nonzero((drawn < 250).any(axis=2)), rel=0.08)
     assert found.order.samples == 20
     assert found.order.told > 0.9
@@ -293,7 +290,6 @@ def test_plain_lines_of_a_plotter_are_asked():
     plotter.add_mesh(mesh, color="tan", line_width=3)
     plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
     found = plotter.vizlight.legibility(samples=256)
-    plotter.close()
     assert found.order.unreadable
     assert found.heading is None
 

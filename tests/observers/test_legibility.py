@@ -181,7 +181,6 @@ def test_a_picture_of_sharp_edges_is_read_like_its_plotter(angle):
     plotter.camera = camera_on(box, (1, 0.7, 0.5), aspect=1.5)
     whole = plotter.vizlight.legibility(**FEW).shape
     picture, camera = plotter.screenshot(return_img=True), plotter.camera.copy()
-    plotter.close()
     read = {"picture": picture, "camera": camera, "key": presets.shape()} | FEW
     assert vizlight.legibility(box, **read, **how).shape == whole
     assert whole.median < 20
@@ -212,7 +211,6 @@ def shot(mesh, **how):
     plotter.add_mesh(mesh, show_scalar_bar=False, **how)
     plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
     picture, camera = plotter.screenshot(return_img=True), plotter.camera.copy()
-    plotter.close()
     return picture, camera
 
 
@@ -258,7 +256,6 @@ def test_a_whole_plotter_is_read():
     plotter.add_mesh(pv.Plane(center=(0.5, 0, 1), i_size=1, j_size=2), color="black")
     plotter.vizlight.add_key()
     half = plotter.vizlight.legibility(samples=1024)
-    plotter.close()
     assert half.pixels < 0.7 * bare.pixels
     assert abs(half.direction.median - bare.direction.median) < 4
 

@@ -63,7 +63,6 @@ def drawn(mesh, radius, color):
     )
     plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5, parallel=True)
     picture, camera = plotter.screenshot(return_img=True), plotter.camera.copy()
-    plotter.close()
     return picture, camera
 
 
@@ -140,7 +139,6 @@ def test_vectors_of_lines_tell_the_sense():
     )
     plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
     found = plotter.vizlight.legibility(samples=64).sense
-    plotter.close()
     assert found.told > 0.9
 
 
@@ -163,7 +161,6 @@ def test_widths_tell_the_sense_unless_half_of_them_run_against_it(against):
     )
     plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
     found = plotter.vizlight.legibility(samples=64, size_mm=30).sense
-    plotter.close()
     assert found.unreadable == (against == 120)
     assert found.unreadable or (found.told > 0.95 and found.wrongly == 0)
 

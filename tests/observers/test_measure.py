@@ -29,7 +29,6 @@ def shot(mesh, **how):
     """Return a picture, from 0 to 1, and its camera."""
     plotter, _ = plotter_of(mesh, show_scalar_bar=False, **how)
     picture, camera = plotter.screenshot(return_img=True) / 255, plotter.camera.copy()
-    plotter.close()
     return picture, camera
 
 
@@ -187,7 +186,6 @@ def test_narrower_lines_are_read_worse_until_chance():
     assert "finer than an eye" in found.reason
     picture = linear(plotter.screenshot(return_img=True) / 255)
     how = {"camera": plotter.camera.copy(), "line_width": 4, "key": presets.heading()} | HOW
-    plotter.close()
     assert bits[0] > 1
     assert falls_to_chance(bits)
     # Lines that are all darker than the key by one factor are read like the others.
@@ -208,7 +206,6 @@ def test_thin_lines_on_a_surface_leave_it_readable(question):
     lines.points[:, 2] += 0.02
     plotter.vizlight.add_mesh(lines, color="black", line_width=1, halo=False)
     found = getattr(plotter.vizlight.legibility(**HOW), question)
-    plotter.close()
     assert found.bits > 0.85 * bare.bits
     assert found.readable > 0.85 * bare.readable
 

@@ -1,13 +1,14 @@
 """What is near some triangles of a large surface has the light of the whole of it."""
 
 import dataclasses
-import tracemalloc
+from functools import partial
 
 import numpy as np
 import pytest
 import pyvista as pv
 
 import vizlight
+from studies import peak_memory
 from vizlight import Light, Scene, View
 from vizlight.draw.sources import with_sharp_edges
 from vizlight.mesh.subdivision import simplices
@@ -76,6 +77,22 @@ CASES = {
     "rows": (flow, {"tangents": np.random.default_rng(0).normal(size=(169, 3))}),
     "grid": (grid, {"feature_angle": 1.0}),
 }
+
+
+def both(monkeypatch, mesh, light, **how):
+    """Return a mesh as a whole, and as one whose surroundings are made near what is read."""
+    parts = []
+    for whole in (1 << 17, 0):
+        monkeypatch.setattr(samples, "WHOLE", whole)
+        parts.append(samples.part_on(mesh, SCENE, light, **how))
+    return parts
+
+
+def assert_alike(parts, *names, atol=2e-6):
+    """Assert that the inputs at the cells of parts are alike, but for their sides."""
+    for name in names:
+        rows, expected = (getattr(part.inputs, name)[:][part.cells[:]] for part in parts)
+        np.testing.assert_allclose(np.abs(rows), np.abs(expected), atol=atol)
 
 
 def in_order(part, chosen=slice(None)):
@@ -161,14 +178,12 @@ def curls(*sizes):
 def test_tangents_of_lines_are_those_of_the_whole(block, monkeypatch):
     mesh = curls(20, 3, 30, 12, 25)
     mesh["v"] = np.arange(60.0)
-    light, chosen = LightOptions(line_field=True), np.array([80, 3, 4, 20, 3])
-    whole = samples.part_on(mesh, SCENE, light, values=mesh["v"]).near(chosen)
-    monkeypatch.setattr(samples, "WHOLE", 0)
+    chosen = np.array([80, 3, 4, 20, 3])
     monkeypatch.setattr(near_cells, "BLOCK", block)
-    part = samples.part_on(mesh, SCENE, light, values=mesh["v"])
+    whole, part = both(monkeypatch, mesh, LightOptions(line_field=True), values=mesh["v"])
     assert part.inputs.tangents is None
     assert part.has_tangents
-    part = part.near(chosen)
+    whole, part = whole.near(chosen), part.near(chosen)
     assert part.inputs.line_field
     for rows, expected in (
         (part.inputs.tangents, whole.inputs.tangents),
@@ -210,18 +225,14 @@ def test_neighbours_are_the_nearest_of_all_points(block, monkeypatch):
 def test_normals_of_points_of_a_scan_are_those_of_the_whole(monkeypatch):
     mesh, chosen = scan(), np.array([8, 900, 3])
     mesh["v"] = np.arange(float(mesh.n_points))
-    whole = samples.part_on(mesh, SCENE, LightOptions(), values=mesh["v"])
-    monkeypatch.setattr(samples, "WHOLE", 0)
-    part = samples.part_on(mesh, SCENE, LightOptions(), values=mesh["v"])
+    whole, part = both(monkeypatch, mesh, LightOptions(), values=mesh["v"])
     assert part.inputs.normals is None
     found = part.near(chosen)
     assert found.mesh.n_points < 40
     rows = found.cells[:, 0]
     np.testing.assert_array_equal(found.values[rows], chosen)
     np.testing.assert_array_equal(found.mesh.points[rows], mesh.points[chosen])
-    np.testing.assert_allclose(
-        found.inputs.normals[:][rows], whole.inputs.normals[:][chosen], atol=1e-6
-    )
+    assert_alike((found, whole.near(chosen)), "normals", atol=1e-6)
     assert samples.part_on(mesh, SCENE, LightOptions(), lit=False).inputs.normals is None
     mesh["n"] = np.asarray(mesh.points)
     mesh.point_data.active_normals_name = "n"
@@ -294,14 +305,10 @@ def test_tangents_of_single_segments_are_those_of_the_joined_lines(monkeypatch):
     mesh.points[ids[40, 1]] = mesh.points[ids[40, 0]]
     chosen = np.array([4, 39, 41, 200])
     monkeypatch.setattr(near_cells, "BLOCK", 3)
-    whole = samples.part_on(mesh, SCENE, LightOptions())
-    monkeypatch.setattr(samples, "WHOLE", 0)
-    part = samples.part_on(mesh, SCENE, LightOptions())
+    whole, part = both(monkeypatch, mesh, LightOptions())
     assert part.inputs.tangents is None
-    found = part.near(chosen)
-    rows, expected = (
-        p.inputs.tangents[:][p.cells[i]] for p, i in ((found, slice(None)), (whole, chosen))
-    )
+    found, same = part.near(chosen), whole.near(chosen)
+    rows, expected = (p.inputs.tangents[:][p.cells] for p in (found, same))
     sign = np.sign(np.einsum("ijk,ijk->i", rows, expected))[:, np.newaxis, np.newaxis]
     np.testing.assert_array_equal(sign * rows, expected)
     assert found.mesh.n_points == mesh.n_points
@@ -311,10 +318,8 @@ def test_points_that_repeat_along_single_segments_have_the_tangent_of_the_whole(
     ids, points = np.arange(14), curls(14).points[:14].copy()
     points[5:8] = points[4]
     mesh = pv.PolyData(points, lines=np.column_stack([0 * ids[1:] + 2, ids[:-1], ids[1:]]).ravel())
-    whole = samples.part_on(mesh, SCENE, LightOptions()).inputs.tangents[:]
-    monkeypatch.setattr(samples, "WHOLE", 0)
-    found = samples.part_on(mesh, SCENE, LightOptions()).near(np.array([3]))
-    np.testing.assert_array_equal(np.abs(found.inputs.tangents[:]), np.abs(whole[[3, 4]]))
+    parts = [part.near(np.array([3])) for part in both(monkeypatch, mesh, LightOptions())]
+    assert_alike(parts, "tangents", atol=0)
 
 
 MATRIX = np.array([[0.8, -0.6, 0, 3], [0.6, 0.8, 0, -1], [0, 0.3, 2, 0], [0, 0, 0, 1.0]])
@@ -334,9 +339,7 @@ def curls_with_vectors():
 def test_a_large_mesh_is_moved_near_the_places_that_are_read(make, lit, monkeypatch):
     mesh, chosen = make(), np.array([3, 20])
     light = LightOptions(tangents="V" if "V" in mesh.array_names else None)
-    whole = samples.part_on(mesh, SCENE, light, matrix=MATRIX, lit=lit)
-    monkeypatch.setattr(samples, "WHOLE", 0)
-    part = samples.part_on(mesh, SCENE, light, matrix=MATRIX, lit=lit)
+    whole, part = both(monkeypatch, mesh, light, matrix=MATRIX, lit=lit)
     assert part.mesh is mesh
     expected = np.asarray(whole.drawn.points[:])
     np.testing.assert_allclose(part.drawn.points[:], expected, atol=1e-6)
@@ -345,8 +348,7 @@ def test_a_large_mesh_is_moved_near_the_places_that_are_read(make, lit, monkeypa
         rows, others = (getattr(p.inputs, name) for p in (found, same))
         assert (rows is None) == (others is None)
         if rows is not None:
-            near_rows, far_rows = rows[:][found.cells], others[:][same.cells]
-            np.testing.assert_allclose(np.abs(near_rows), np.abs(far_rows), atol=2e-6)
+            assert_alike((found, same), name)
 
 
 def test_solid_cells_are_read_on_their_surface_with_the_rows_of_their_arrays():
@@ -422,10 +424,7 @@ def test_tangents_of_the_cells_of_lines_and_points_are_those_of_the_whole(name, 
     for mesh in map(with_vectors, (lines, mixed, pv.PolyData(points))):
         light, values = LightOptions(tangents=name), np.arange(60.0)
         for matrix in (None, MATRIX):
-            monkeypatch.setattr(samples, "WHOLE", 1 << 17)
-            whole = samples.part_on(mesh, SCENE, light, values=values, matrix=matrix)
-            monkeypatch.setattr(samples, "WHOLE", 0)
-            part = samples.part_on(mesh, SCENE, light, values=values, matrix=matrix)
+            whole, part = both(monkeypatch, mesh, light, values=values, matrix=matrix)
             assert part.inputs.tangents is None
             assert part.has_tangents
             chosen = np.array([40, 3, 4, 20, 3])
@@ -444,15 +443,11 @@ def test_tangents_of_the_cells_of_lines_and_points_are_those_of_the_whole(name, 
                 assert ahead.any() == (name != "W")
     lines["n"] = np.asarray(lines.points)
     for how in ({"conditioned": True, "normals": "n"}, {"conditioned": "n"}):
-        parts = []
-        for size in (1 << 17, 0):
-            monkeypatch.setattr(samples, "WHOLE", size)
-            part = samples.part_on(lines, SCENE, LightOptions(tangents=name, **how))
-            assert (part.inputs.tangents is None) == (size == 0)
-            parts.append(part.near(chosen))
-        for rows in ("tangents", "normals" if "normals" in how else "base_tangents"):
-            found, same = (getattr(p.inputs, rows)[:][p.cells] for p in parts)
-            np.testing.assert_allclose(found, same, atol=1e-6)
+        parts = both(monkeypatch, lines, LightOptions(tangents=name, **how))
+        assert [part.inputs.tangents is None for part in parts] == [False, True]
+        parts = [part.near(chosen) for part in parts]
+        names = "tangents", "normals" if "normals" in how else "base_tangents"
+        assert_alike(parts, *names, atol=1e-6)
     with pytest.raises(ValueError, match="without faces"):
         samples.part_on(lines, SCENE, LightOptions(tangents=name, conditioned=True))
 
@@ -465,16 +460,12 @@ def test_curved_faces_are_near_what_they_are_in_the_whole(kind, monkeypatch):
     mesh.points[:, 2] += 0.2 * np.sin(5 * mesh.points[:, 0])
     np.testing.assert_array_equal(DrawnTriangles.of(mesh)[:], simplices(mesh))
     for light in (LightOptions(tangents="W"), LightOptions(tangents="u,v,w"), LightOptions()):
-        values, parts = np.arange(9.0), []
-        for size in (1 << 17, 0):
-            monkeypatch.setattr(samples, "WHOLE", size)
-            part = samples.part_on(mesh, SCENE, light, values=values, flat=True)
-            parts.append(part.near(np.arange(len(part.cells))[::-2]))
-        assert (parts[0].large, parts[1].large) == (False, True)
+        parts = both(monkeypatch, mesh, light, values=np.arange(9.0), flat=True)
+        assert [part.large for part in parts] == [False, True]
+        parts = [part.near(np.arange(len(part.cells))[::-2]) for part in parts]
         np.testing.assert_array_equal(parts[0].values, parts[1].values)
-        for rows in ("points", "normals", "tangents")[: 2 + (light.tangents is not None)]:
-            found, same = (getattr(p.inputs, rows)[:][p.cells] for p in parts)
-            np.testing.assert_allclose(np.abs(found), np.abs(same), atol=2e-6)
+        names = ("points", "normals", "tangents")[: 2 + (light.tangents is not None)]
+        assert_alike(parts, *names)
 
 
 @pytest.mark.parametrize("name", ["W", "u,v,w"])
@@ -486,16 +477,11 @@ def test_faces_beside_lines_are_near_what_they_are_in_the_whole(name, monkeypatc
     light, chosen = LightOptions(tangents=name), np.arange(0, 288, 7)
     for mesh in map(with_vectors, (plane, grid)):
         values = np.arange(float(mesh.n_cells))
-        parts = []
-        for size in (1 << 17, 0):
-            monkeypatch.setattr(samples, "WHOLE", size)
-            part = samples.part_on(mesh, SCENE, light, values=values, flat=True)
-            assert part.large == (size == 0)
-            parts.append(part.near(chosen))
+        parts = both(monkeypatch, mesh, light, values=values, flat=True)
+        assert [part.large for part in parts] == [False, True]
+        parts = [part.near(chosen) for part in parts]
         np.testing.assert_array_equal(parts[0].values, parts[1].values)
-        for rows in ("points", "tangents", "normals"):
-            found, same = (getattr(p.inputs, rows)[:][p.cells] for p in parts)
-            np.testing.assert_allclose(np.abs(found), np.abs(same), atol=2e-6)
+        assert_alike(parts, "points", "tangents", "normals")
         assert parts[0].inputs.line_field == parts[1].inputs.line_field == (name == "W")
 
 
@@ -519,18 +505,11 @@ def test_the_surroundings_of_hidden_cells_are_those_of_the_whole(marked, monkeyp
     if marked == "points":
         data, count = mesh.point_data, mesh.n_points
     data["vtkGhostType"] = random.choice([0] * 25 + [1, 2, 8, 32], count).astype(np.uint8)
-    light = LightOptions(tangents="W")
-    whole = samples.part_on(mesh, SCENE, light)
-    monkeypatch.setattr(samples, "WHOLE", 0)
-    part = samples.part_on(mesh, SCENE, light)
+    whole, part = both(monkeypatch, mesh, LightOptions(tangents="W"))
     corners = part.cells[:]
     chosen = random.permutation(np.flatnonzero((corners != corners[:, :1]).any(axis=1)))[:99]
-    found, same = part.near(chosen), whole.cells[chosen]
-    for name in ("tangents", "normals"):
-        rows, expected = (
-            getattr(p.inputs, name)[:][cells] for p, cells in ((found, found.cells), (whole, same))
-        )
-        np.testing.assert_allclose(np.abs(rows), np.abs(expected), atol=2e-6)
+    found = part.near(chosen)
+    assert_alike((found, whole.near(chosen)), "tangents", "normals")
     assert found.inputs.line_field
 
 
@@ -539,11 +518,7 @@ def test_memory_goes_by_the_points_and_not_by_the_cells_around_them():
     grid.cell_data["W"] = np.ones((grid.n_cells, 3), np.float32)
     light, points = LightOptions(tangents="W"), np.arange(0, grid.n_points, 9000)
     near_cells.around_points(grid, points, light)
-    tracemalloc.start()
-    near_cells.around_points(grid, points, light)
-    _, most = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
-    assert most < 10e6
+    assert peak_memory(partial(near_cells.around_points, grid, points, light)) < 10e6
 
 
 def test_options_that_do_not_fit_lines_are_refused_near_their_segments_too(monkeypatch):
@@ -583,12 +558,9 @@ def test_memory_goes_by_the_triangles_and_not_by_the_surface():
     for mesh in (plane, with_segment(plane), curved(200)):
         surface = DrawnTriangles.of(mesh)
         near(mesh, surface, np.array([3]), LightOptions())
-        tracemalloc.start()
-        near(mesh, surface, np.arange(0, len(surface), 9000), LightOptions())
-        _, most = tracemalloc.get_traced_memory()
-        tracemalloc.stop()
+        some = np.arange(0, len(surface), 9000)
         # A table of a megabyte, and blocks of 2^16 polygons, whose corners may be made.
-        assert most < 13e6
+        assert peak_memory(partial(near, mesh, surface, some, LightOptions())) < 13e6
 
 
 def test_memory_goes_by_the_segments_and_not_by_the_lines():
@@ -597,8 +569,5 @@ def test_memory_goes_by_the_segments_and_not_by_the_lines():
     mesh.points = np.random.default_rng(0).random((ids.size, 3), dtype=np.float32)
     mesh.lines = np.insert(ids, 0, ids.shape[1], axis=1).ravel()
     lines = DrawnSegments.of(mesh)
-    tracemalloc.start()
-    near_cells.tangents_at(mesh, lines, ids[:, 3], lambda part: np.asarray(part.points))
-    _, most = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
-    assert most < 16e6
+    tangents = partial(near_cells.tangents_at, mesh, lines, ids[:, 3])
+    assert peak_memory(lambda: tangents(lambda part: np.asarray(part.points))) < 16e6

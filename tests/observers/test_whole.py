@@ -36,7 +36,6 @@ def test_a_moved_actor_is_read_like_a_moved_mesh(question, how):
             actor.user_matrix = MATRIX
         plotter.camera = camera_on(there, (0.1, 0.05, 1), up=(0, 1, 0), aspect=1.5)
         figures.append(getattr(plotter.vizlight.legibility(**HOW), question))
-        plotter.close()
     assert figures[0].bits > 1
     assert figures[0].bits == pytest.approx(figures[1].bits, abs=0.08)
     assert figures[0].median == pytest.approx(figures[1].median, rel=0.1)
@@ -48,7 +47,6 @@ def test_values_without_light_are_left_out():
     with pytest.warns(UserWarning, match="could not be lit"):
         plotter, _ = plotter_of(mesh, **DIRECTION, scalars="height", show_scalar_bar=False)
     found = plotter.vizlight.legibility(**HOW)
-    plotter.close()
     assert found.value.samples == pytest.approx(HOW["samples"] / 2, rel=0.1)
     assert any("have no value" in note for note in found.notes)
 
@@ -61,7 +59,6 @@ def test_colours_that_were_lit_before_are_read_by_their_record():
     plotter.add_mesh(shown, scalars="rgb", rgb=True, lighting=False)
     plotter.camera = from_above(mesh)
     read = plotter.vizlight.legibility(**HOW).value
-    plotter.close()
     assert read.median < 0.03
     assert read.samples == HOW["samples"]
 
@@ -74,7 +71,6 @@ def test_position_and_scale_of_plain_colors_are_read():
     actor.position, actor.scale = (5, 0, 0), (2, 1, 1)
     plotter.camera = camera_on(actor.bounds, (0, 0, 1), aspect=1.5)
     found = plotter.vizlight.legibility(**HOW).value
-    plotter.close()
     assert found.median < 0.03
 
 
@@ -96,7 +92,6 @@ def test_values_of_a_mesh_in_4_space_are_read():
     how = {"positions": "place", "tangents": "along", "scalars": "height", "cmap": "coolwarm"}
     plotter, _ = plotter_of(mesh, show_scalar_bar=False, **how)
     found = plotter.vizlight.legibility(**HOW)
-    plotter.close()
     assert found.value.median < 0.04
     assert found.direction is None
 
@@ -107,7 +102,6 @@ def test_a_direction_up_near_the_line_of_sight_turns_no_answer():
         plotter, _ = plotter_of(sheet(), **DIRECTION)
         plotter.camera = camera_on(sheet(), (0.1, 0.05, 1), up=up, aspect=1.5)
         medians.append(plotter.vizlight.legibility(**HOW).direction.median)
-        plotter.close()
     assert max(medians) < 6
 
 
@@ -162,7 +156,6 @@ def test_the_active_part_of_a_window_is_read_alone():
         assert found.size == (120, 80)
         assert found.value.median < 0.03
         assert (found.size_mm, found.noise, found.seed) == (20, 2.3, 0)
-    plotter.close()
 
 
 def test_a_plotter_without_a_camera_is_read_from_where_pyvista_shows_it():
@@ -173,7 +166,6 @@ def test_a_plotter_without_a_camera_is_read_from_where_pyvista_shows_it():
         if placed:
             plotter.view_isometric(render=False)
         figures.append(plotter.vizlight.legibility(**HOW))
-        plotter.close()
     assert figures[0] == figures[1]
     assert figures[0].toward_eye == pytest.approx([3**-0.5] * 3)
 
@@ -188,7 +180,6 @@ def test_what_hides_a_mesh_and_what_is_nearly_clear():
         front.SetVisibility(opacity > 0)
         plotter.camera = camera_on(sheet(20), (0, 0, 1), aspect=1.5, parallel=True)
         pixels.append(plotter.vizlight.legibility(size_mm=20, samples=64).pixels)
-        plotter.close()
     assert pixels[0] == pixels[2]
     assert pixels[1] == pytest.approx(pixels[0] / 2, rel=0.03)
 
@@ -205,7 +196,6 @@ def test_walls_without_their_near_sides_hide_nothing():
     walls.prop.FrontfaceCullingOff()
     with pytest.raises(ValueError, match="a point that the eye sees"):
         plotter.vizlight.legibility(**HOW)
-    plotter.close()
 
 
 def test_strokes_are_read_where_they_are_as_wide_as_they_are_drawn():
@@ -225,7 +215,6 @@ def test_strokes_are_read_where_they_are_as_wide_as_they_are_drawn():
     plotter.camera = camera_on(line, (0, 0, 1), up=(0, 1, 0), aspect=4)
     read = plotter.vizlight.legibility(**HOW)
     dark = np.asarray(plotter.screenshot(return_img=True))[..., 0] < 128
-    plotter.close()
     assert read.pixels == pytest.approx(dark.sum(), rel=0.15)
 
 
@@ -241,7 +230,6 @@ def test_speeds_are_told_by_the_bar_of_lines_whose_tangents_have_one_length():
     )
     plotter.camera = from_above(grid)
     read = plotter.vizlight.legibility(**HOW)
-    plotter.close()
     assert read.speed.spearman > 0.85
 
 
@@ -250,7 +238,6 @@ def test_a_point_hides_as_much_as_it_covers():
     bare = plotter.vizlight.legibility(samples=16).pixels
     plotter.add_mesh(pv.PolyData([0.0, 0, 1]), color="black", point_size=20)
     hidden = bare - plotter.vizlight.legibility(samples=16).pixels
-    plotter.close()
     assert hidden == pytest.approx(400, rel=0.1)
 
 
@@ -259,9 +246,7 @@ def read_plain(mesh, way=(0, 0, 1), **drawing):
     plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
     plotter.add_mesh(mesh, lighting=False, show_scalar_bar=False, **drawing)
     plotter.camera = camera_on(mesh, way, aspect=1.5)
-    found = plotter.vizlight.legibility(**HOW)
-    plotter.close()
-    return found
+    return plotter.vizlight.legibility(**HOW)
 
 
 @pytest.mark.parametrize("place", ["point_data", "cell_data"])
@@ -278,7 +263,6 @@ def test_quadrilaterals_are_read_as_they_are_drawn(place):
     plotter.add_mesh(mesh, lighting=False, show_scalar_bar=False, **how)
     plotter.camera = camera_on(mesh, (0, 0, 1), aspect=1.5)
     picture = plotter.screenshot()
-    plotter.close()
     key = ("gray", mesh.get_data_range("v"))
     found = vizlight.legibility(
         mesh, picture=picture, camera=plotter.camera, scalars="v", key=key, **HOW
@@ -295,7 +279,6 @@ def test_a_component_is_read_as_it_is_drawn():
     for how in ({"scalars": "V", "component": 0}, {"scalars": "x"}):
         plotter, _ = plotter_of(mesh, scene=vizlight.presets.shape(), **how)
         found.append(plotter.vizlight.legibility(**HOW).value)
-        plotter.close()
     assert found[0].bits == pytest.approx(found[1].bits, rel=0.01)
     assert found[0].median < 0.05
 
@@ -307,7 +290,6 @@ def test_colours_that_were_averaged_to_points_are_read_there():
     with pytest.warns(UserWarning, match="averaged from cells to points"):
         plotter.vizlight.add_mesh(mesh, scene=vizlight.presets.shape(), scalars="v", light="points")
     part = shown_by(plotter.renderer, plotter.vizlight._live_of).parts[0]
-    plotter.close()
     assert not part.flat
     np.testing.assert_allclose(part.values, mesh.cell_data_to_point_data()["v"], rtol=1e-6)
 
@@ -361,7 +343,6 @@ def test_strokes_tell_the_direction_until_they_are_too_thin():
     plotter = pv.Plotter(off_screen=True, window_size=(360, 240))
     plotter.add_mesh(lines, color="black", line_width=1)
     far = plotter.vizlight.legibility(**HOW | {"size_mm": 4.0}).direction
-    plotter.close()
     assert far.unreadable
     assert far.median == 45
 
@@ -376,15 +357,15 @@ def test_a_ball_tells_normals_in_its_own_frame_wherever_the_eye_is():
         plotter.camera.position = np.array([1, 0.4, 0.3]) * 0.65 / np.sin(np.radians(angle / 2))
         plotter.renderer.reset_camera_clipping_range()
         medians.append(plotter.vizlight.legibility(**HOW).shape.median)
-        plotter.close()
     assert max(medians) < 7
 
 
 def test_what_has_no_key_is_not_read_and_said_so():
     plotter = pv.Plotter(off_screen=True, window_size=(90, 60))
     plotter.add_mesh(pv.PolyData(np.eye(3)), color="red")
+    # What cannot be picked is no data.
+    plotter.add_mesh(sheet(9), scalars="height", pickable=False, show_scalar_bar=False)
     found = plotter.vizlight.legibility()
-    plotter.close()
     assert found.pixels == 0
     assert found.notes == ("nothing that is shown has a key by which it could be read",)
     assert "nothing that is shown" in str(found)
@@ -396,9 +377,7 @@ def read_marks(add):
     plotter.background_color = "white"
     add(plotter)
     plotter.camera = from_above(sheet(9))
-    found = plotter.vizlight.legibility(**HOW)
-    plotter.close()
-    return found
+    return plotter.vizlight.legibility(**HOW)
 
 
 def mapped(plotter, *, scaled=False):

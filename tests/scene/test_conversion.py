@@ -57,7 +57,6 @@ def pictures(lights, model, shininess, *, parallel, specular=1.0):
             lit["grey"] = np.repeat(grey[:, np.newaxis], 3, axis=1)
             plotter.add_mesh(lit, scalars="grey", rgb=True, lighting=False)
         images.append(plotter.screenshot(return_img=True)[:, :, 0].astype(float))
-        plotter.close()
     return images
 
 

@@ -101,7 +101,6 @@ def test_a_near_lamp_of_a_plotter_has_the_light_of_vtk(law):
     )
     light = lit["luminance"][plane.find_closest_point((0, 0, 0))]
     assert 255 * light == pytest.approx(middle, abs=2)
-    plotter.close()
 
 
 def camera():

@@ -141,7 +141,6 @@ def test_views_cameras_plotters_and_records(name):
     view = View.from_camera(camera)
     assert preset(camera) == preset(plotter) == preset(view) == preset().replace(view=view)
     assert preset().view is None
-    plotter.close()
     assert Scene.from_dict(preset(view).to_dict()) == preset(view)
     with pytest.raises(TypeError, match="view: expected a vizlight.View, a pyvista.Camera, a py"):
         preset((0, 0, 1))

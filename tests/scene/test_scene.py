@@ -125,7 +125,6 @@ def off_from_vtk(expected, ball, rgb):
     shown = ball.copy()
     ours, _ = plotter_of(shown, "none", scalars=np.clip(rgb, 0, 1), rgb=True, lighting=False)
     got = np.array(ours.screenshot(return_img=True)).astype(int)
-    ours.close()
     inside = binary_erosion(expected.max(axis=2) > 0, iterations=4)
     assert inside.sum() > 5000
     return np.abs(got - expected)[inside].max()
@@ -157,7 +156,6 @@ def test_the_material_of_an_actor_gives_the_picture_of_vtk(lighting, model, clai
     assert scene.view.parallel == (lighting == "headlight")
     assert (scene.view.position, scene.view.direction) == (seen.position, seen.direction)
     assert Scene.from_plotter(theirs, actor=actor, view=seen).view == seen
-    theirs.close()
     claim(off_from_vtk(expected, ball, channels(illuminate(ball, scene, model=model))), 3)
 
 
@@ -174,7 +172,6 @@ def test_colours_of_data_times_the_light_are_the_picture_of_vtk(lighting, claim)
     )  # fmt: skip
     expected = np.array(theirs.screenshot(return_img=True)).astype(int)
     scene = Scene.from_plotter(theirs, actor=actor)
-    theirs.close()
     colours = pv.LookupTable("viridis", scalar_range=(heights.min(), heights.max()))(heights)
     material = scene.material
     matt = dataclasses.replace(material, specular=0.0)
@@ -192,7 +189,6 @@ def test_a_highlight_that_is_not_that_of_vtk_is_told_of():
     with pytest.warns(UserWarning, match="Blinn model and power 5; .* light by model='blinn'"):
         Scene.from_plotter(theirs, actor=actor)
     Scene.from_plotter(theirs, actor=actor, model="blinn")
-    theirs.close()
 
 
 @pytest.mark.opengl
@@ -201,7 +197,6 @@ def test_an_actor_coloured_by_data_gives_no_colour():
     ball = pv.Sphere()
     actor = plotter.add_mesh(ball, scalars=ball.points[:, 2], diffuse=0.7, ambient=0.2)
     material = Scene.from_plotter(plotter, actor=actor).material
-    plotter.close()
     assert material.color is None
     assert (material.diffuse, material.ambient) == (0.7, 0.2)
 

@@ -134,7 +134,6 @@ def test_a_mesh_with_normals_is_looked_at_once_if_they_leave_doubt(
         mesh = mesh.compute_normals(cell_normals=False, split_vertices=False)
     plotter = pv.Plotter(off_screen=True, window_size=(60, 40))
     plotter.vizlight.add_mesh(mesh)
-    plotter.close()
     assert len(shapes) == count
     assert len(walks) == 1
 
@@ -146,7 +145,7 @@ def test_tangents_of_lines_are_computed_once(monkeypatch):
     )
     monkeypatch.setattr(memory, "_KEPT", {})
     look = vizlight.look(pv.Spline(np.random.default_rng(3).normal(size=(9, 3)), 50))
-    look.plotter().close()
+    look.plotter()
     assert len(calls) == 1
 
 
@@ -156,7 +155,6 @@ def test_small_blocks_are_looked_at_together_and_once(shapes):
     lit = vizlight.illuminate(mesh, scene, feature_angle="auto")
     plotter = pv.Plotter(off_screen=True, window_size=(60, 40))
     plotter.vizlight.add_mesh(mesh, scene=scene)
-    plotter.close()
     assert shapes == [3 * mesh[0].n_points]
     apart = vizlight.illuminate(mesh[1], scene, feature_angle="auto")
     np.testing.assert_array_equal(lit[1]["luminance"], apart["luminance"])

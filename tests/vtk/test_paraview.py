@@ -147,7 +147,6 @@ def test_light_is_that_of_vizlight_and_follows_the_eye(tmp_path, files):
         plotter.camera.up = (0, 0, 1)
         plotter.renderer.ResetCameraClippingRange()
         ours = np.asarray(plotter.screenshot(return_img=True), dtype=float)
-        plotter.close()
         theirs = np.asarray(Image.open(tmp_path / f"{i}.png").convert("RGB"), dtype=float)
         seen = np.any(ours > 0, axis=2) & np.any(theirs > 0, axis=2)
         error = np.abs(ours - theirs).max(axis=2)[seen]

@@ -92,7 +92,10 @@ class Command:
             try:
                 # A file that is refused has no notes.
                 with notes_at_end():
-                    for i, time in enumerate([None] if joined else self._times(group[0])):
+                    steps = [None] if joined else times(group[0], self.part)
+                    # Of a movie the look is that of the first step.
+                    steps = steps if self._is_by_step else steps[:1]
+                    for i, time in enumerate(steps):
                         look = self._look(group, time)
                         ending = self.stem if not self._is_by_step else f"{self.stem}-{i:04d}"
                         outputs = _outputs(look, f"{group[0].stem}-{ending}", out, paths)
@@ -121,11 +124,6 @@ class Command:
         named = self.out.output or ()
         are_movies = bool(named) and all(path.suffix.lower() in MOVIES for path in named)
         return self.part.times is not None and not are_movies
-
-    def _times(self, path: Path) -> list[float | str | None]:
-        """Return the times of the steps of a file that are lit: of a movie that of the first."""
-        every = times(path, self.part)
-        return every if self._is_by_step else every[:1]
 
     def _look(self, paths: Sequence[Path], time: float | str | None) -> Look:
         """Return the look of a file at a time, or of several in one picture."""

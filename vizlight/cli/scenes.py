@@ -55,7 +55,10 @@ def wishes_of(
     from vizlight.looks.wishes import Wishes
 
     lights, eye, out = common.lights, common.eye, common.out
-    _check_lights(lights)
+    for name in ("light", "light_position", "headlight"):
+        if lights.question is not None and getattr(lights, name):
+            got = f"--{name.replace('_', '-')} beside it"
+            raise value_error("--for", "lights of its own", got, "leave one out")
     picture: Keywords = given_options(
         background=out.background,
         line_width=None if out.line_width == 1 else out.line_width,
@@ -97,13 +100,6 @@ def wishes_of(
         ),
         surface=getattr(part, "surface", True),
     )
-
-
-def _check_lights(lights: Lights) -> None:
-    for name in ("light", "light_position", "headlight"):
-        if lights.question is not None and getattr(lights, name):
-            got = f"--{name.replace('_', '-')} beside it"
-            raise value_error("--for", "lights of its own", got, "leave one out")
 
 
 def _part_of(part: FilePart) -> Keywords:

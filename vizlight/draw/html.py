@@ -242,7 +242,8 @@ class Page:
         self, live: Fragments, scene: Scene, actor: vtkActor, matrix: Array
     ) -> dict[str, object]:
         """Return the light in fragments: texts, numbers, tangents and normals."""
-        rows = self._lights_of(live, scene)
+        pairs = [(light, light.follows_view) for light in scene.lights]
+        rows = self._lamps(lights_of_plotter(self.renderer) if live.scene is None else pairs)
         prop = actor.GetProperty()
         texts, constants, plan = self._written(live, scene, rows)
         self._lines |= not plan.surface
@@ -309,7 +310,10 @@ class Page:
         sources, inputs = {"": live.source}, live.source.inputs
         on_surface = inputs.normals is not None and inputs.tangents is not None
         if live.source.options.conditioned and on_surface and inputs.fur_height is None:
-            sources["free "] = _unconditioned(live.source)
+            # Tangents that are lit as lines, wherever their surface is.
+            lines = dataclasses.replace(inputs, normals=None, sides=None)
+            options = dataclasses.replace(live.source.options, conditioned=False)
+            sources["free "] = live.source._replace(inputs=lines, options=options, sided=None)
         constants: dict[str, list[float]] = {}
         places: dict[str, int] = {}
         yes_no, counts = (False, True), (range(near + 1), range(far + 1))
@@ -362,11 +366,6 @@ class Page:
                     f"{name}: the light does not follow the eye{why}; {LEFT_OUT}{said}"
                 )
         return {"live": False, "colors": _packed(lit, "u1"), "color": [1.0, 1.0, 1.0]}
-
-    def _lights_of(self, live: Live, scene: Scene) -> list[dict[str, object]]:
-        """Return the lights of a mesh, as the page moves them."""
-        pairs = [(light, light.follows_view) for light in scene.lights]
-        return self._lamps(lights_of_plotter(self.renderer) if live.scene is None else pairs)
 
     def _lamps(self, pairs: Sequence[tuple[Light, bool]]) -> list[dict[str, object]]:
         """Return lights as the page moves them, from each and whether it follows the eye."""
@@ -430,22 +429,19 @@ def _stroked(live: Live, actor: vtkActor) -> dict[str, object]:
         leans /= np.maximum(np.linalg.norm(leans, axis=1, keepdims=True), 1e-30)
         entry["leans"] = _packed(np.rint(127.5 * (leans + 1)), "u1")
     if strokes.PHASE in live.source.mesh.point_data:
-        entry["moving"] = _moving(live)
+        phase, passing, grown = (
+            live.picked(np.asarray(live.source.mesh.point_data[name], dtype=np.float64))
+            for name in (strokes.PHASE, strokes.PASSING, strokes.GROWN)
+        )
+        # The arrays by which the page moves strokes, and the shape of a stroke.
+        entry["moving"] = {
+            "phase": _packed(np.rint(phase % 1.0 * NO_VALUE), "u2"),
+            "passing": _packed(np.minimum(passing, NO_VALUE), "u2"),
+            "grown": _packed(np.rint(255 * grown), "u1"),
+            **strokes.FLAT._asdict(),
+            "bare": strokes.BARE, "base": strokes.BASE, "seconds": SECONDS,
+        }  # fmt: skip
     return entry
-
-
-def _moving(live: Live) -> dict[str, object]:
-    """Return the arrays by which the page moves strokes, and the shape of a stroke."""
-    phase, passing, grown = (
-        live.picked(np.asarray(live.source.mesh.point_data[name], dtype=np.float64))
-        for name in (strokes.PHASE, strokes.PASSING, strokes.GROWN)
-    )
-    return {
-        "phase": _packed(np.rint(phase % 1.0 * NO_VALUE), "u2"),
-        "passing": _packed(np.minimum(passing, NO_VALUE), "u2"),
-        "grown": _packed(np.rint(255 * grown), "u1"),
-        **strokes.FLAT._asdict(), "bare": strokes.BARE, "base": strokes.BASE, "seconds": SECONDS,
-    }  # fmt: skip
 
 
 def _number_of(item: Foreign, items_stored: list[Foreign]) -> int:
@@ -458,13 +454,6 @@ def _number_of(item: Foreign, items_stored: list[Foreign]) -> int:
 def _plan(scene: Scene, source: Source) -> Plan:
     options = dataclasses.replace(source.options, components=False)
     return decide(scene, source.inputs.layout, options)
-
-
-def _unconditioned(source: Source) -> Source:
-    """Return tangents that are lit as lines, wherever their surface is."""
-    inputs = dataclasses.replace(source.inputs, normals=None, sides=None)
-    options = dataclasses.replace(source.options, conditioned=False)
-    return source._replace(inputs=inputs, options=options, sided=None)
 
 
 def _lamp(light: Light, value: list[float], *, at: bool, follows: bool) -> dict[str, object]:

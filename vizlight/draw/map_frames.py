@@ -106,7 +106,11 @@ def frame(mesh: pv.DataSet, /, letters: float, *, up: Sequence[float] = (0.0, 1.
         parts = _scales(box, letters, section) if turn[1, 1] > 1 - ALMOST else []
         return _joined(parts, mesh, turn)
     if is_degrees and straight:
-        parts += _degrees(box, letters, np.rint(turn))
+        left, right, bottom, top = box
+        # In the picture x is 1, 0 or -1 of east.
+        x, y = np.rint(turn)
+        east, north = _along(left, right, letters, x), _along(bottom, top, letters, y)
+        parts += _sides(box, letters, east, north)
     if sheet is not None:
         parts += _around(sheet, letters, turn)
     metres = _bar_unit(mesh, sheet)
@@ -220,13 +224,6 @@ def _box(mesh: pv.DataSet, turn: Array) -> Array:
     return np.stack([flat.min(axis=0), flat.max(axis=0)], axis=1).ravel()
 
 
-def _degrees(box: Array, size: float, turn: Array) -> list[Part]:
-    """Return a frame with its ticks and their words; in the picture x is 1, 0 or -1 of east."""
-    left, right, bottom, top = box
-    east, north = _along(left, right, size, turn[0]), _along(bottom, top, size, turn[1])
-    return _sides(box, size, east, north)
-
-
 def _sides(box: Array, size: float, *words: Sequence[tuple[float, str]]) -> list[Part]:
     """Return a frame with ticks and their words: those along its lower and along its left side."""
     left, right, bottom, top = box
@@ -297,7 +294,8 @@ def _numbers(
         round_degrees = ticks(first, last, degrees, SIGNS[scale.title], is_up=is_up)
         return [(scale.factor * value, word) for value, word in round_degrees]
     of_dates = dates.round_dates(first, last, scale.unit, MOST) if scale.title == "time" else ()
-    others = _round_powers(first, last) if scale.is_log else _round(first, last)
+    fewer = (even_numbers(first, last, most) for most in range(MOST, 1, -1))
+    others = _round_powers(first, last) if scale.is_log else fewer
     for numbers in itertools.chain(of_dates, others):
         places = [(scale.factor * value, word) for value, word in numbers]
         widest = max((letters.width(word) for _, word in places), default=0.0)
@@ -305,12 +303,6 @@ def _numbers(
         if all(abs(b - a) >= room for (a, _), (b, _) in itertools.pairwise(places)):
             return places
     return []
-
-
-def _round(low: float, high: float) -> Iterator[list[tuple[float, str]]]:
-    """Yield round numbers within a range, and their digits, ever fewer."""
-    for most in range(MOST, 1, -1):
-        yield even_numbers(low, high, most)
 
 
 def _round_powers(low: float, high: float) -> Iterator[list[tuple[float, str]]]:
@@ -374,7 +366,10 @@ def _around(sheet: charts.MapSheet, size: float, turn: Array) -> list[Part]:
         flat = piece @ turn.T
         if is_around and not is_meridian:
             if np.allclose(flat[0], flat[-1], rtol=0, atol=near):
-                parts.append(_inside(flat, word, SMALL * size))
+                # A parallel around a pole has its word on its inner side, to the lower right.
+                small, middle = SMALL * size, flat.mean(axis=0)
+                x, y = flat[int(((flat - middle) @ (1.0, -2.0)).argmax())]
+                parts.append(_word(word, x, y + GAP * small, small, align=0.5))
             continue
         for toward in (below, beside) if is_meridian else (beside, below):
             ends = [(*_away(end, outline, 2 * near, toward), end) for end in (flat[0], flat[-1])]
@@ -419,27 +414,16 @@ def _away(end: Array, outline: Array, near: float, toward: Array) -> tuple[float
     The share is that of the best of the sides near the end of a line, -inf without any.
     """
     sides = np.roll(outline, -1, axis=0) - outline
-    at = np.flatnonzero(_apart(end, outline, sides) < near)
+    lengths = np.maximum(np.einsum("ij,ij->i", sides, sides), np.finfo(float).tiny)
+    shares = np.clip(np.einsum("ij,ij->i", end - outline, sides) / lengths, 0, 1)
+    nearest = outline + shares[:, np.newaxis] * sides
+    at = np.flatnonzero(np.linalg.norm(nearest - end, axis=1) < near)
     if not len(at):
         return -math.inf, toward
     away = np.column_stack([sides[at, 1], -sides[at, 0]])
     away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), np.finfo(float).tiny)
     best = int((away @ toward).argmax())
     return float(away[best] @ toward), away[best]
-
-
-def _inside(piece: Array, word: str, size: float) -> Part:
-    """Return the word of a parallel around a pole on its inner side, to the lower right."""
-    middle = piece.mean(axis=0)
-    x, y = piece[int(((piece - middle) @ (1.0, -2.0)).argmax())]
-    return _word(word, x, y + GAP * size, size, align=0.5)
-
-
-def _apart(place: Array, starts: Array, sides: Array) -> Array:
-    """Return the distances of a place from segments."""
-    lengths = np.maximum(np.einsum("ij,ij->i", sides, sides), np.finfo(float).tiny)
-    shares = np.clip(np.einsum("ij,ij->i", place - starts, sides) / lengths, 0, 1)
-    return np.asarray(np.linalg.norm(starts + shares[:, np.newaxis] * sides - place, axis=1))
 
 
 def _border(outline: Array, wide: float) -> Part:

@@ -324,7 +324,7 @@ def travel(
         If an argument does not fit, the plotter has no strokes that move, or a file cannot be
         written. No partial file is left.
     """
-    render.check_plotter(plotter)
+    _check.instance("plotter", plotter, pv.BasePlotter, "a pyvista.Plotter")
     component: Foreign = plotter.vizlight
     moving: list[pv.PolyData] = component.moving()
     if not moving:
@@ -352,7 +352,7 @@ def _filmed(
     progress_bar: bool,
 ) -> list[Path]:
     """Save the pictures of a plotter that a function sets to a frame of some, and close it."""
-    render.check_plotter(plotter)
+    _check.instance("plotter", plotter, pv.BasePlotter, "a pyvista.Plotter")
     path = _check_movie(path)
     count = _check.integer("frames", frames, low=1)
     fps = _check.number("fps", fps, low=0.01, high=100.0)

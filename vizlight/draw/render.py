@@ -526,7 +526,14 @@ def canvas(
     if not _check.boolean("off_screen", off_screen):
         plotter = pv.Plotter(window_size=pixels)
     else:
-        with _window_of(backend, must_draw=_check.boolean("draws", draws)):
+        must_draw = _check.boolean("draws", draws)
+        window: contextlib.AbstractContextManager[None] = contextlib.nullcontext()
+        try:
+            window = window_class(choose_backend(backend))
+        except BackendError:
+            if must_draw:
+                raise
+        with window:
             plotter = pv.Plotter(off_screen=True, window_size=pixels, border=False)
     plotter.background_color = back
     strokes.lay_on_surfaces(plotter.renderer)
@@ -539,28 +546,6 @@ def canvas(
     else:
         plotter.enable_anti_aliasing("msaa", multi_samples=8)
     return plotter
-
-
-def _window_of(
-    backend: Backend | None, *, must_draw: bool
-) -> contextlib.AbstractContextManager[None]:
-    """Return a context for windows that need no display."""
-    try:
-        return window_class(choose_backend(backend))
-    except BackendError:
-        if must_draw:
-            raise
-        return contextlib.nullcontext()
-
-
-def check_plotter(plotter: object) -> None:
-    """Raise TypeError for other objects than plotters.
-
-    Parameters
-    ----------
-    plotter : object
-    """
-    _check.instance("plotter", plotter, pv.BasePlotter, "a pyvista.Plotter")
 
 
 def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
@@ -583,7 +568,7 @@ def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
     FileError
         If the file cannot be written. No partial file is left.
     """
-    check_plotter(plotter)
+    _check.instance("plotter", plotter, pv.BasePlotter, "a pyvista.Plotter")
     path = check_output(path, IMAGES)
     with contextlib.closing(plotter):
         plotter.reset_camera_clipping_range()
@@ -594,23 +579,6 @@ def save(plotter: pv.Plotter, path: str | Path, /) -> Path:
 HARDLY = 1e-3
 #: Share of pixels unlike the background from which no key and no text can account for them.
 PLAINLY = 0.25
-
-
-def share_of_data(plotter: pv.Plotter, /) -> float:
-    """Return the share of the pixels of a plotter's picture that data change.
-
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        Plotter that draws offscreen; it is rendered with and without its actors in space. Keys,
-        bars, texts and surfaces of the colour of the background behind them do not count.
-
-    Returns
-    -------
-    float
-        Share from 0 to 1.
-    """
-    return _share(plotter, _picture(plotter))
 
 
 def save_seen(plotter: pv.Plotter, path: Path, draft: str) -> None:
@@ -629,7 +597,7 @@ def save_seen(plotter: pv.Plotter, path: Path, draft: str) -> None:
     # A picture without any data is rendered only where there can be few of them in this one.
     if np.mean(np.any(picture != corner, axis=2)) >= PLAINLY:
         return
-    share = _share(plotter, picture)
+    share = share_of_data(plotter, picture)
     if share < HARDLY:
         _check.warn(
             f"data are hardly seen in '{path.name}': they change {share:.2%} of its pixels; they "
@@ -638,11 +606,7 @@ def save_seen(plotter: pv.Plotter, path: Path, draft: str) -> None:
         )
 
 
-def _picture(plotter: pv.Plotter) -> NDArray[np.uint8]:
-    return np.array(plotter.screenshot(return_img=True))
-
-
-def _share(plotter: pv.Plotter, picture: NDArray[np.uint8]) -> float:
+def share_of_data(plotter: pv.Plotter, picture: NDArray[np.uint8], /) -> float:
     """Return the share of the pixels of a picture that are others without the data."""
     shown = [
         actor
@@ -655,7 +619,7 @@ def _share(plotter: pv.Plotter, picture: NDArray[np.uint8]) -> float:
         actor.SetVisibility(False)
     try:
         plotter.render()
-        bare = _picture(plotter)
+        bare = np.array(plotter.screenshot(return_img=True))
     finally:
         for actor in shown:
             actor.SetVisibility(True)

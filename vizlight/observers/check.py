@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from vizlight.shading.engine import Shading
     from vizlight.shading.inputs import ArraySource, ShadingInputs
     from vizlight.shading.options import ShadingOptions
-    from vizlight.shading.results import Record
 
 
 #: Error that a picture of 8 bits shows.
@@ -346,8 +345,17 @@ def _skies(lit: pv.DataSet | pv.MultiBlock, name: str, record: Keywords) -> Iter
     used = name if record["filter"] == "sky" else record["options"].get("occlusion")
     for block in blocks.all_blocks(lit) if used else ():
         sky = records.read(block, used) or {}
-        if sky.get("filter") == "sky":
-            yield _of_sky(sky)
+        if sky.get("filter") != "sky":
+            continue
+        text, error, requested = "error unknown", sky["error"], sky["requested"]
+        if isinstance(error, float) and isinstance(requested, float):
+            text = f"error {error:.2g} or less at 95 of 100 points"
+            if error > requested:
+                text += f" ({requested:g} was requested)"
+        text = f"sky of {sky['points']} points: {text}, as estimated, {sky['method']}"
+        if "between" in sky:
+            text += f"; between the points {sky['between']:.2g} or less at 95 of 100 places"
+        yield text
 
 
 def _bundles(lit: pv.DataSet | pv.MultiBlock, name: str, record: Keywords) -> Iterator[str]:
@@ -362,42 +370,24 @@ def _bundles(lit: pv.DataSet | pv.MultiBlock, name: str, record: Keywords) -> It
             )
 
 
-def _of_sky(record: Record) -> str:
-    """Return the errors of a sky in words."""
-    text = f"sky of {record['points']} points: error unknown"
-    error, requested = record["error"], record["requested"]
-    if isinstance(error, float) and isinstance(requested, float):
-        text = f"sky of {record['points']} points: error {error:.2g} or less at 95 of 100 points"
-        if error > requested:
-            text += f" ({requested:g} was requested)"
-    text += f", as estimated, {record['method']}"
-    if "between" in record:
-        text += f"; between the points {record['between']:.2g} or less at 95 of 100 places"
-    return text
-
-
 def _runs(mesh: pv.DataSet | pv.MultiBlock, name: str, drawing: RandomRows) -> Iterator[Run]:
     """Yield the runs of a mesh, of one dataset unless it is fur."""
     record = records.provenance(mesh, name)
     made_by, shadow = record["filter"], record["options"].get("name")
     if made_by == "isoluminance":
-        yield _of_bands(mesh, name, record)
+        # Of bands of equal luminance, or of the contours beside them.
+        (bound,) = np.asarray(mesh.field_data[f"{name}_error"])
+        yield Run(
+            points=mesh.n_points, terms=tuple(record["terms"]), precision=record["precision"],
+            bytes=np.asarray(mesh.cell_data[name]).nbytes, invalid=record["invalid"],
+            bound=float(bound), unmeasured=BANDED,
+        )  # fmt: skip
         return
     if made_by in ("relief_day", "relief_shadow") and shadow in records.made(mesh, shadow):
         yield _of_shadow(mesh, shadow, records.provenance(mesh, shadow), drawing)
     if made_by not in ("relief_day", "sky") and not (made_by == "relief_shadow" and name == shadow):
         for lit in relight.lit_again(mesh, name):
             yield _of_light(lit, name, drawing)
-
-
-def _of_bands(bands: pv.DataSet, name: str, record: Keywords) -> Run:
-    """Return the run of bands of equal luminance, or of the contours beside them."""
-    (bound,) = np.asarray(bands.field_data[f"{name}_error"])
-    return Run(
-        points=bands.n_points, terms=tuple(record["terms"]), precision=record["precision"],
-        bytes=np.asarray(bands.cell_data[name]).nbytes, invalid=record["invalid"],
-        bound=float(bound), unmeasured=BANDED,
-    )  # fmt: skip
 
 
 def _of_shadow(mesh: pv.DataSet, name: str, record: Keywords, drawing: RandomRows) -> Run:

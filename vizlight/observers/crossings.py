@@ -15,6 +15,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from vizlight.model.kernels import unit_rows
 from vizlight.observers.eye import ROUNDING
 from vizlight.observers.lines import SEEN
 
@@ -83,7 +84,7 @@ def crossings_of(lines: Segments, count: int, random: np.random.Generator) -> Cr
     pair = random.permutation(pair)[: TRIES * count]
     first, second = pair.T
     # Both lines go straight on across the crossing.
-    u, v = _unit(lines.way[first]), _unit(lines.way[second])
+    u, v = unit_rows(lines.way[first]), unit_rows(lines.way[second])
     sine = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
     steep = np.abs(sine) >= STEEP
     first, second, u, v, sine = first[steep], second[steep], u[steep], v[steep], sine[steep]
@@ -157,7 +158,7 @@ def _arms(
     distances: tuple[float, ...] = BESIDE,
 ) -> Array:
     """Return places on a line at distances from the borders of the other, shape (2, D, N, 2)."""
-    u, v = _unit(lines.way[line]), _unit(lines.way[other])
+    u, v = unit_rows(lines.way[line]), unit_rows(lines.way[other])
     sine = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
     # Inside of a narrow line there is but its middle.
     far = np.maximum(lines.width[other] / 2 + np.array(distances)[:, np.newaxis], 0.0) / sine
@@ -167,11 +168,11 @@ def _arms(
 
 def _straight(lines: Segments, at: Array, line: Indices, other: Indices) -> Bools:
     """Return whether lines go straight on through crossings, as far as they are looked at."""
-    u, v = _unit(lines.way[line]), _unit(lines.way[other])
+    u, v = unit_rows(lines.way[line]), unit_rows(lines.way[other])
     sine = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
     reach = (lines.width[other] / 2 + BESIDE[-1]) / sine
     place = lines.along[line] + np.einsum("ij,ij->i", at - lines.start[line], u)
-    way = _unit(lines.ways_at(np.concatenate([place - reach, place + reach])))
+    way = unit_rows(lines.ways_at(np.concatenate([place - reach, place + reach])))
     straight = np.einsum("ij,ij->i", way, np.concatenate([u, u])) >= STRAIGHT
     return np.asarray(straight.reshape(2, -1).all(axis=0))
 
@@ -229,8 +230,3 @@ def _first_of_each(at: Array) -> Indices:
 
 def _taken(crossings: Crossings, rows: Bools | Indices) -> Crossings:
     return Crossings(crossings.at[rows], crossings.front[rows], crossings.back[rows])
-
-
-def _unit(vectors: Array) -> Array:
-    length = np.hypot(vectors[:, 0], vectors[:, 1])
-    return np.asarray(vectors / np.maximum(length, 1e-12)[:, np.newaxis])

@@ -584,7 +584,7 @@ class _PictureReader:
                 here = dataclasses.replace(here, scene=display.for_colors(here.scene))
                 colors = readers.light_of(colors, p.part.table)
             readings.append(readers.read_normal(here, self.middle, colors, phase))
-        lengths = np.concatenate([p.structure(_normal) for p in groups])
+        lengths = np.concatenate([p.structure(lambda s: np.asarray(s.normals)) for p in groups])
         common = self._common("shape", groups, readings, lengths)
         error = _errors(readings)
         median = Shape.chance if common["reason"] else float(np.median(error))
@@ -635,8 +635,14 @@ class _PictureReader:
 
     def speed(self) -> Speed | None:
         """Return how colours rank the lengths of vectors, on the mesh where they tell most."""
-        groups = [p for p in self.groups if p.here.magnitude is not None and _can_tell_length(p)]
-        groups = [_once(p) for p in groups]
+        groups = []
+        for p in self.groups:
+            # Vectors may differ by the lengths of marks, by light, or by colours of values.
+            by_color = p.part.values is not None or p.part.scene.lights
+            if p.here.magnitude is not None and (p.length is not None or by_color):
+                # One place of each point and glyph, which has one colour, and all of the others.
+                whole = p.part.kind == "point" or p.part.glyph is not None
+                groups.append(p[np.unique(p.thing, return_index=True)[1]] if whole else p)
         groups = _kept(groups, lambda p: np.isfinite(np.asarray(p.here.magnitude)))
         figures = []
         for p in groups:
@@ -668,24 +674,10 @@ class _PictureReader:
         }
 
 
-def _can_tell_length(places: SeenPlaces) -> bool:
-    """Return whether marks have lengths, light or colours of values by which vectors may differ."""
-    part = places.part
-    return places.length is not None or part.values is not None or bool(part.scene.lights)
-
-
 def _is_line_in_light(places: SeenPlaces) -> bool:
     """Return whether places are on lines in the colours of light, and not of values."""
     part = places.part
     return part.kind == "line" and part.values is None and places.here.has_one_tangent
-
-
-def _once(places: SeenPlaces) -> SeenPlaces:
-    """Return one place of each point and glyph, which has one colour, and all of the others."""
-    whole = places.part.kind == "point" or places.part.glyph is not None
-    if not whole:
-        return places
-    return places[np.unique(places.thing, return_index=True)[1]]
 
 
 def _kept(groups: list[SeenPlaces], rule: Callable[[SeenPlaces], Bools]) -> list[SeenPlaces]:
@@ -733,11 +725,6 @@ def _doubled(here: Sample) -> Array:
     """Return directions in the picture as unit vectors that do not depend on their sign."""
     angle = 2 * readers.course(here)
     return np.stack([np.cos(angle), np.sin(angle)], axis=1)
-
-
-def _normal(here: Sample) -> Array:
-    assert here.normals is not None
-    return here.normals
 
 
 def _position(table: pv.LookupTable) -> Callable[[Sample], Array]:

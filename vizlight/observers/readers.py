@@ -374,7 +374,11 @@ def read_heading(
         For each share, angles in degrees, from 0 to 90, between the tangents and the likeliest of
         180 directions in space that have their course in the picture.
     """
-    light = linear(shown(_light_in_frame(sample, middle, _ways())))
+    ways = _ways()
+    place = _nearest(sample, middle, len(ways))
+    axes = np.stack([place.right, place.up, place.eye], axis=1)
+    lit = place.light(np.einsum("ij,ijk->ik", ways, axes)[:, np.newaxis], None)
+    light = linear(shown(lit))
     tables = [lab_of_xyz(share * light @ XYZ.T) for share in shares]
     return [_along(sample, middle, colors, table[np.newaxis]) for table in tables]
 
@@ -435,13 +439,6 @@ def _along(sample: Sample, middle: Array, colors: Colors, tables: Array) -> Read
     off = np.abs(answer - np.stack([toward, toward[other]]))
     error, other_error = np.minimum(off, 180 - off)
     return _compared(error, other_error, logarithms, right, other)
-
-
-def _light_in_frame(sample: Sample, middle: Array, ways: Array) -> Array:
-    """Return the light of lines at the middle, with directions in the frame of the eye."""
-    place = _nearest(sample, middle, len(ways))
-    axes = np.stack([place.right, place.up, place.eye], axis=1)
-    return place.light(np.einsum("ij,ijk->ik", ways, axes)[:, np.newaxis], None)
 
 
 def read_normal(sample: Sample, middle: Array, colors: Colors, phase: float) -> Reading:

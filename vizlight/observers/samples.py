@@ -159,8 +159,10 @@ def sample(part: SeenMesh, pixels: Pixels, camera: pv.Camera) -> Sample:
     if part.values is not None:
         rows = part.values[cell if part.flat else ids].astype(np.float64)
         values = rows if part.flat else np.asarray(interpolated(rows, places))
-    if (speeds := _speeds(whole)) is not None:
+    traced = whole.kind == "line" and whole.light.tangents == TANGENTS
+    if traced and (name := speed_of(whole.mesh)) is not None:
         # The tangents of streamlines have the length 1.
+        speeds = np.asarray(whole.mesh.point_data[name], dtype=np.float64)
         magnitude = interpolated(speeds[whole.cells[names][cell].ravel()], places)
     elif part.inputs.tangents is not None and part.inputs.tangents.shape[1] == 3:
         magnitude = interpolated(length_rows(rows_of(part.inputs.tangents, ids)), places)
@@ -169,14 +171,6 @@ def sample(part: SeenMesh, pixels: Pixels, camera: pv.Camera) -> Sample:
         tangents=tangents, normals=normals, values=values, valid=valid, scene=part.scene,
         options=part.options, magnitude=magnitude,
     )  # fmt: skip
-
-
-def _speeds(part: SeenMesh) -> Array | None:
-    """Return the lengths of the vectors along which streamlines were traced, None without."""
-    if part.kind != "line" or part.light.tangents != TANGENTS:
-        return None
-    name = speed_of(part.mesh)
-    return None if name is None else np.asarray(part.mesh.point_data[name], dtype=np.float64)
 
 
 def _tangents(part: SeenMesh, ids: Indices, places: Places) -> Array | None:
@@ -498,7 +492,7 @@ def part_on(
         inputs = _inputs(mesh, path, scene, light, kind, lit=lit)
         points, tangents = _moved_points(inputs.points, matrix), inputs.tangents
         if tangents is not None:
-            tangents = _moved_points(tangents, _linear(matrix))
+            tangents = _moved_points(tangents, matrix, shift=0.0)
         inputs = dataclasses.replace(inputs, points=points, tangents=tangents)
     else:
         mesh, light = moved(mesh, light, matrix)
@@ -597,22 +591,15 @@ def _moves_by_rows(
     return kind == "line" and rows is not None and rows.shape[1:] == (3,)
 
 
-def _linear(matrix: Array | None) -> Array | None:
-    """Return a matrix without its shift."""
-    if matrix is None:
-        return None
-    linear = np.eye(4)
-    linear[:3, :3] = matrix[:3, :3]
-    return linear
-
-
-def _moved_points(points: ArraySource, matrix: Array | None) -> ArraySource:
-    """Return points where a matrix places them, which are not stored."""
+def _moved_points(
+    points: ArraySource, matrix: Array | None, *, shift: float = 1.0
+) -> ArraySource:  # fmt: skip
+    """Return points where a matrix places them, with a share of its shift, which are not stored."""
     if matrix is None:
         return points
 
     def at(ids: Indices) -> Array:
-        moved_rows: Array = rows_of(points, ids) @ matrix[:3, :3].T + matrix[:3, 3]
+        moved_rows: Array = rows_of(points, ids) @ matrix[:3, :3].T + shift * matrix[:3, 3]
         return moved_rows
 
     return MadePoints(points.shape[0], at)

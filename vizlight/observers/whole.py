@@ -33,7 +33,7 @@ from vizlight.vtk.polylines import has_lines_only
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vtkmodules.vtkRenderingCore import vtkMapper, vtkProperty, vtkRenderer
+    from vtkmodules.vtkRenderingCore import vtkRenderer
 
     from vizlight._types import Array, Foreign, Keywords, Raw
     from vizlight.observers.samples import SeenMesh
@@ -168,17 +168,14 @@ def shown_by(renderer: vtkRenderer, live_of: Callable[[vtkActor], Live | None]) 
             part = _lit(live, renderer, actor, stroke_width)
         if part is not None:
             if part.kind == "point":
-                part = dataclasses.replace(part, width=_point_width(style, pixel))
+                # The square that a point fills, or one as large as its ball.
+                share = math.sqrt(math.pi / 4) if style.GetRenderPointsAsSpheres() else 1.0
+                width = max(1.0, share * style.GetPointSize() / pixel)
+                part = dataclasses.replace(part, width=width)
             shown.parts.append(part)
         elif style.GetOpacity() >= HIDES:
             shown.occluders.append(_occluder(actor, pixel))
     return shown
-
-
-def _point_width(style: vtkProperty, pixel: float) -> float:
-    """Return the width in pixels of the square that a point fills, or as large as its ball."""
-    share = math.sqrt(math.pi / 4) if style.GetRenderPointsAsSpheres() else 1.0
-    return max(1.0, share * style.GetPointSize() / pixel)
 
 
 def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> SeenMesh | None:
@@ -201,15 +198,6 @@ def _lit(live: Live, renderer: vtkRenderer, actor: vtkActor, width: float) -> Se
         mesh, scene, options, matrix=matrix_of(actor.GetMatrix()), lit=lit, width=width,
         **_stroke_of(live), **colors,
     )  # fmt: skip
-
-
-def _mesh_of(mapper: vtkMapper) -> pv.DataSet | None:
-    """Return the mesh of a mapper of PyVista with colours that may mean values or axes of lines."""
-    glyphs = isinstance(mapper, vtkGlyph3DMapper)
-    mesh = _glyphs_of(mapper) if glyphs else pv.wrap(mapper.GetInput())
-    if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
-        return None
-    return mesh
 
 
 def _glyphs_of(mapper: Foreign) -> pv.PolyData | None:
@@ -251,9 +239,11 @@ def _colored(
 ) -> SeenMesh | None:
     """Return a mesh with colours that mean values, or nothing on lines, as a part."""
     mapper = actor.GetMapper()
-    mesh = _mesh_of(mapper) if live is None else live.source.mesh
+    glyphs = isinstance(mapper, vtkGlyph3DMapper)
+    of_mapper = _glyphs_of(mapper) if glyphs else pv.wrap(mapper.GetInput())
+    mesh = of_mapper if live is None else live.source.mesh
     name = mapper.GetArrayName() if live is None else live.given
-    if mesh is None:
+    if not isinstance(mesh, pv.DataSet) or not mesh.n_points:
         return None
     # Colours that are drawn as they are have no table; those of n-space were made of values.
     direct = mapper.GetColorMode() == DIRECT and mapper.GetArrayName() == name

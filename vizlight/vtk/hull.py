@@ -81,7 +81,10 @@ def as_lagrange(grid: vtkUnstructuredGrid) -> vtkUnstructuredGrid:
     control = places(grid).astype(np.float64)
     of_points = point_data(grid).GetAttribute(_WEIGHTS)
     weights = np.ones(len(control)) if of_points is None else as_numpy(of_points).reshape(-1)
-    points_out, plain = control.copy(), _without_weights(grid)
+    points_out, plain = control.copy(), vtkUnstructuredGrid()
+    # A copy with the Bernstein polynomials alone as shape functions.
+    plain.ShallowCopy(grid)
+    point_data(plain).SetActiveAttribute(-1, _WEIGHTS)
     for cells in _alike(grid, types, np.diff(ends), np.flatnonzero(curved)):
         shares = _shares(plain.GetCell(int(cells[0])))
         corners = ids[ends[cells][:, np.newaxis] + np.arange(len(shares))]
@@ -95,14 +98,6 @@ def as_lagrange(grid: vtkUnstructuredGrid) -> vtkUnstructuredGrid:
     kinds = np.where(curved, types - VTK_BEZIER_CURVE + VTK_LAGRANGE_CURVE, types)
     out.SetCells(as_vtk(kinds.astype(np.uint8)), grid_cells(grid))
     return out
-
-
-def _without_weights(grid: vtkUnstructuredGrid) -> vtkUnstructuredGrid:
-    """Return a copy with the Bernstein polynomials alone as shape functions."""
-    plain = vtkUnstructuredGrid()
-    plain.ShallowCopy(grid)
-    point_data(plain).SetActiveAttribute(-1, _WEIGHTS)
-    return plain
 
 
 def _alike(
@@ -188,7 +183,8 @@ def outer_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
 def _numbered_surface(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
     """Return :func:`outer_surface`, and the cell of the mesh that each of its cells is of."""
     surface, ids = _with_walls(mesh)
-    if _has_walls(mesh):
+    # Flat polygons may lie on the faces of solid cells.
+    if {SOLID - 1, SOLID}.issubset(map(_dimension, cell_types(mesh))):
         _join_walls(surface, mesh)
     cells = as_numpy(surface.GetCellData().GetArray(NUMBERS)).astype(np.intp)
     surface.GetCellData().RemoveArray(NUMBERS)
@@ -237,11 +233,6 @@ def _with_walls(mesh: Dataset) -> tuple[vtkPolyData, Indices]:
             surface.SetPolys(_outward(surface, mesh, cells))
         surface, ids = _merged(surface, ids)
     return surface, ids
-
-
-def _has_walls(mesh: Dataset) -> bool:
-    """Return whether a dataset has flat polygons beside solid cells."""
-    return {SOLID - 1, SOLID}.issubset(map(_dimension, cell_types(mesh)))
 
 
 def _join_walls(surface: vtkPolyData, grid: Dataset) -> None:
@@ -543,7 +534,12 @@ def parts(mesh: Grid) -> Iterator[GridPart]:
         stop = min(start + layers, count)
         low, high = max(start - 1, 0), min(stop + 1, count)
         # A layer more on either side: normals and borders at the cut are then those of the whole.
-        surface, ids = outer_surface(_layers(mesh, axis, low, high))
+        # Without the arrays, which would be copied for each part.
+        bare: Foreign = mesh.NewInstance()
+        bare.CopyStructure(mesh)
+        extent = list(mesh.GetExtent())
+        extent[2 * axis : 2 * axis + 2] = extent[2 * axis] + low, extent[2 * axis] + high - 1
+        surface, ids = outer_surface(cropped(bare, extent))
         # The number of a point in the layers becomes its number in the grid: VTK's first index
         # varies fastest.
         inner = (*size[:axis], high - low, *size[axis + 1 :])
@@ -554,16 +550,6 @@ def parts(mesh: Grid) -> Iterator[GridPart]:
         # surface of the grid.
         around = finite_faces(surface, side == 0)
         yield GridPart(around, np.ravel_multi_index(index, size, order="F"), side)
-
-
-def _layers(mesh: Grid, axis: int, low: int, high: int) -> Foreign:
-    """Return some layers of a grid across an axis as a grid."""
-    bare: Foreign = mesh.NewInstance()
-    # Without the arrays, which would be copied for each part.
-    bare.CopyStructure(mesh)
-    extent = list(mesh.GetExtent())
-    extent[2 * axis : 2 * axis + 2] = extent[2 * axis] + low, extent[2 * axis] + high - 1
-    return cropped(bare, extent)
 
 
 def cropped(mesh: Foreign, extent: Sequence[int]) -> Foreign:

@@ -97,21 +97,16 @@ def _outlines(word: str) -> list[Array]:
             outlines[-1].append(flat[at : at + 1])
         else:
             degree = 2 if codes[at] == vtkPath.CONIC_CURVE else 3
-            corners = [outlines[-1][-1][-1], *flat[at : at + degree]]
-            outlines[-1].append(_bezier(corners, share))
+            # De Casteljau's construction of a Bezier curve.
+            rows: list[Array] = [outlines[-1][-1][-1], *flat[at : at + degree]]
+            while len(rows) > 1:
+                rows = [(1 - share) * a + share * b for a, b in itertools.pairwise(rows)]
+            outlines[-1].append(rows[0])
             at += degree - 1
         at += 1
     loops = [np.concatenate(parts) for parts in outlines]
     # The first point is repeated at the end.
     return [loop[:-1] if np.array_equal(loop[0], loop[-1]) else loop for loop in loops]
-
-
-def _bezier(corners: list[Array], share: Array) -> Array:
-    """Return points of a Bezier curve of degree 2 or 3 by de Casteljau's construction."""
-    rows = [np.broadcast_to(corner, (len(share), 2)) for corner in corners]
-    while len(rows) > 1:
-        rows = [(1 - share) * a + share * b for a, b in itertools.pairwise(rows)]
-    return rows[0]
 
 
 def _path(word: str) -> tuple[Array, Indices]:

@@ -64,7 +64,14 @@ def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData 
     with _LOCK:
         _KEPT[key] = _Kept(points, value, mesh.GetNumberOfPoints())
         if len(_KEPT) <= _SWEEP or next(_CALLS) % max(_SWEEP, len(_KEPT) // _SWEEP) == 0:
-            _forget()
+            # Results of deleted points go, and the oldest where they are too many.
+            for gone in [each for each, kept in _KEPT.items() if kept.points.Get() is None]:
+                del _KEPT[gone]
+            size = sum(kept.size for kept in _KEPT.values())
+            for oldest in list(_KEPT):
+                if size <= MOST:
+                    break
+                size -= _KEPT.pop(oldest).size
     return value
 
 
@@ -78,17 +85,6 @@ def _key(mesh: vtkPolyData, name: str) -> tuple[str, ...]:
     """Return what tells a result of a surface from others."""
     # By the values: times of modification do not tell of values that NumPy writes to VTK's memory.
     return name, *_digests(mesh)
-
-
-def _forget() -> None:
-    """Forget results of deleted points, and the oldest where they are too many."""
-    for key in [key for key, kept in _KEPT.items() if kept.points.Get() is None]:
-        del _KEPT[key]
-    size = sum(kept.size for kept in _KEPT.values())
-    for key in list(_KEPT):
-        if size <= MOST:
-            break
-        size -= _KEPT.pop(key).size
 
 
 def _digests(mesh: vtkPolyData) -> list[str]:

@@ -310,7 +310,9 @@ def _of_given(surface: vtkPolyData, normals: Array, block: Indices | None) -> tu
     doubtful = closed & ~alike
     if doubtful.any():
         # A closed surface whose faces have no common side, such as Boy's, has no outside.
-        closed &= alike | ~_inside_out(surface, of, count)
+        shape = orientation.SurfaceShape(surface, block=of)
+        _wound(surface, shape, as_wound=False)
+        closed &= alike | (np.bincount(of, shape.inside_out[shape.piece], count) == 0)
     if not closed.any():
         return closed, ~closed
     ids = np.flatnonzero(vtk_cells.used(surface))
@@ -783,14 +785,6 @@ def _wound(surface: vtkPolyData, shape: orientation.SurfaceShape, *, as_wound: b
     """
     if as_wound or shape.alike:
         return surface
-    output: vtkPolyData = vtk_cells.result(_orienter(), surface)
-    if not _same_cells(surface, output):
-        shape.rewind(output)
-    return output
-
-
-def _orienter() -> Foreign:
-    """Return a filter of VTK that winds faces alike, the one without normals where VTK has it."""
     orient: Foreign = vtkPolyDataNormals()
     # Split points would be new ones, and the faces no longer those of the points here.
     orient.SplittingOff()
@@ -802,14 +796,12 @@ def _orienter() -> Foreign:
         orient.AutoOrientNormalsOff()
     # Across an edge of three faces or more there is no winding to carry on.
     orient.NonManifoldTraversalOff()
-    return orient
-
-
-def _inside_out(surface: vtkPolyData, block: Indices, count: int) -> Bools:
-    """Return which blocks have a piece without an outer side, such as a Klein bottle."""
-    shape = orientation.SurfaceShape(surface, block=block)
-    _wound(surface, shape, as_wound=False)
-    return np.bincount(block, shape.inside_out[shape.piece], count) > 0
+    output: vtkPolyData = vtk_cells.result(orient, surface)
+    strips = surface.GetNumberOfStrips() or output.GetNumberOfStrips()
+    cells = [vtk_cells.connectivity(each.GetPolys()) for each in (surface, output)]
+    if strips or not all(np.array_equal(a, b) for a, b in zip(*cells, strict=True)):
+        shape.rewind(output)
+    return output
 
 
 def piece_numbers(mesh: Dataset) -> Indices:
@@ -830,10 +822,3 @@ def _skin(mesh: Dataset) -> tuple[vtkPolyData | None, Indices | None]:
         if vtk_cells.has_faces(surface)
         else None
     ), origin
-
-
-def _same_cells(this: vtkPolyData, other: vtkPolyData) -> bool:
-    """Return whether two surfaces of polygons have equal cells."""
-    strips = this.GetNumberOfStrips() or other.GetNumberOfStrips()
-    cells = [vtk_cells.connectivity(surface.GetPolys()) for surface in (this, other)]
-    return not strips and all(np.array_equal(a, b) for a, b in zip(*cells, strict=True))

@@ -28,8 +28,7 @@ def plotter():
     plotter = pv.Plotter(off_screen=True, window_size=(150, 120))
     plotter.background_color = "white"
     plotter.enable_anti_aliasing("msaa", multi_samples=8)
-    yield plotter
-    plotter.close()
+    return plotter
 
 
 def seen_from_above(plotter, scale=1.2):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from lattices import faces_around
 from refusals import refusals
 from vectors import projector, unit
 
@@ -168,6 +169,38 @@ def test_closed_by_any_truth_value():
     for closed in (True, 1, np.True_, [1], np.array([True])):
         assert len(parametric(circle, [TURN], 2, closed=closed).cells) == 64
     assert len(parametric(circle, [TURN], 2, closed=0).cells) == 63
+
+
+@pytest.mark.parametrize(
+    "radii", [(2.0,), (1.5, 0.75), (1, 2, 3), (1e-150, 5e-151), (1e149, 5e148)]
+)
+def test_tori_have_no_seam_and_orthonormal_frames_along_their_cells(radii):
+    shape = manifolds.torus(*radii, resolution=[24, 16, 9][: len(radii)])
+    gram = np.einsum("bki,bli->bkl", shape.frame, shape.frame)
+    assert np.abs(gram - np.eye(shape.k)).max() < 8 * EPS
+    assert set(faces_around(shape.cells)) == {2}
+    places = shape.points / max(radii)
+    # Nothing stands twice at a place: a seam would.
+    assert len(np.unique(np.round(places, 9), axis=0)) == len(places)
+    ends = shape.cells[:, 0], shape.cells[:, 1]
+    step = unit(places[ends[1]] - places[ends[0]])
+    along = np.linalg.norm(np.einsum("bki,bi->bk", shape.frame[ends[0]], step), axis=1)
+    assert along.min() > 0.8
+
+
+test_bad_frames = refusals(
+    lambda k: manifolds.Manifold(np.zeros((8, 3)), np.zeros((8, k, 3)), np.zeros((1, 2**k), int)),
+    (0, r"frame: expected shape \(8, k, 3\) with k < 3"),
+    (3, r"frame: expected shape \(8, k, 3\) with k < 3"),
+)
+
+
+test_bad_radii = refusals(
+    lambda radii: manifolds.torus(*radii),
+    ((), "radii: expected 1 to 3 radii, got 0"),
+    ((1, 0), r"radii\[1\]: expected a number above 0"),
+    ((1e200,), r"radii\[0\]: expected a number from"),
+)
 
 
 def test_constants_and_volumes():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from studies.sky import ground
 from vizlight import _compiled, _pool
 from vizlight.geometry.relief import sky as module
 from vizlight.geometry.relief.sky import sky
@@ -17,15 +18,6 @@ def code(request, monkeypatch):
     fast = getattr(request.node, "callspec", None)
     fast = fast.params.get("fast", "1") if fast else "1"
     monkeypatch.setenv("VIZLIGHT_FAST", fast if not _compiled._missing() else "0")
-
-
-def rough(count, slope, seed=1):
-    """Return fractal ground with a root mean square slope, spacing 1."""
-    random = np.random.default_rng(seed)
-    wave = np.fft.fftfreq(count)[:, None] ** 2 + np.fft.rfftfreq(count) ** 2
-    wave[0, 0] = 1
-    z = np.fft.irfft2(np.fft.rfft2(random.normal(size=(count, count))) / wave**0.9, s=2 * (count,))
-    return z * slope / np.sqrt(np.mean(np.diff(z, axis=0) ** 2))
 
 
 def height(x, y, z, px, py):
@@ -102,7 +94,7 @@ def test_a_bowl():
 @pytest.mark.parametrize("slope", [0.2, 1.0])
 @pytest.mark.parametrize("error", [0.02, pytest.param(0.0015, marks=pytest.mark.slow)])
 def test_the_error_holds_on_rough_ground(slope, error):
-    z = rough(96, slope, seed=int(10 * slope))
+    z = ground(96, slope, seed=int(10 * slope))
     x = np.arange(96.0)
     found = sky(x, x, z, error=error)
     at = np.random.default_rng(3).integers(0, 96, (40, 2))
@@ -162,7 +154,7 @@ def test_the_way_depends_on_the_field_and_the_error_alone(monkeypatch):
     assert first.method == "horizons through every cell"
     for threads in (1, 3):
         for _ in range(2):
-            sky(x, x, rough(32, 1.0), error=0.03)
+            sky(x, x, ground(32, 1.0), error=0.03)
         with _pool.threads(threads):
             assert np.array_equal(sky(x, x, z).share, first.share)
 
@@ -184,7 +176,7 @@ def test_steps_of_numpy_give_way_to_every_cell(monkeypatch):
 @pytest.mark.slow
 def test_by_numpy_the_error_holds_too(monkeypatch):
     monkeypatch.setenv("VIZLIGHT_FAST", "0")
-    z, x = rough(64, 0.5), np.arange(64.0)
+    z, x = ground(64, 0.5), np.arange(64.0)
     found = sky(x, x, z, error=0.01)
     assert found.method == "horizons through every cell"
     missed = [
@@ -213,7 +205,7 @@ def test_unequal_spacing_and_the_number_of_threads():
 @pytest.mark.parametrize("openness", [False, True])
 def test_rows_of_other_lengths_see_a_field_of_their_own(openness, fast):
     """Each row as if all had its length of a unit of x, as degrees of longitude have."""
-    x, y, z = np.arange(16.0), np.arange(14.0), rough(16, 0.6)[:14]
+    x, y, z = np.arange(16.0), np.arange(14.0), ground(16, 0.6)[:14]
     stretch = np.linspace(0.3, 1.2, len(y))
     shares = sky(x, y, z, error=0.05, stretch=stretch, openness=openness)
     assert shares.error <= 0.05
@@ -226,7 +218,7 @@ def test_rows_of_other_lengths_see_a_field_of_their_own(openness, fast):
 
 @FAST
 def test_a_mirrored_field_has_the_mirrored_sky(fast):
-    z, x = rough(28, 0.6), np.arange(28.0)
+    z, x = ground(28, 0.6), np.arange(28.0)
     found = sky(x, x, z, error=0.01).share
     for turned, back in (
         (z[::-1], np.s_[::-1]), (z[:, ::-1], np.s_[:, ::-1]), (z.T, None)
@@ -278,7 +270,7 @@ def test_bisection_on_a_long_hull():
 
 def test_constant_and_tilted_by_units():
     x = np.arange(20.0)
-    z = rough(20, 0.5)
+    z = ground(20, 0.5)
     found = sky(x, x, z).share
     for unit in (1e-20, 1e20):
         assert np.abs(sky(unit * x, unit * x, unit * z).share - found).max() < 1e-5
@@ -304,7 +296,7 @@ def test_bad_fields():
 
 @pytest.mark.slow
 def test_the_effort_grows_with_what_is_asked():
-    z, x = rough(64, 1.0), np.arange(64.0)
+    z, x = ground(64, 1.0), np.arange(64.0)
     coarse, fine = sky(x, x, z, error=0.03), sky(x, x, z, error=0.0005)
     assert coarse.azimuths == module.FEWEST
     assert fine.azimuths > 4 * coarse.azimuths
