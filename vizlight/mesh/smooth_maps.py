@@ -7,7 +7,8 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._types import Array
-from vizlight.mesh import blocks
+from vizlight.geometry.nspace import lattice
+from vizlight.mesh import blocks, records
 
 #: Types of grids that may have one layer.
 Grid = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
@@ -64,10 +65,7 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     if len(sizes) != 2:
         raise _check.value_error("mesh", "a grid of one layer", mesh.dimensions)
     _check.text("name", name, expected="the name of an array")
-    if name not in mesh.point_data or np.ndim(mesh.point_data[name]) != 1:
-        expected = "the name of an array of one component at points"
-        raise _check.value_error("name", expected, repr(name))
-    values = np.asarray(mesh.point_data[name], dtype=np.float64)
+    values: Array = records.scalars_of(mesh, "name", name).astype(np.float64)
     is_known = np.isfinite(values)
     places = np.asarray(mesh.points, dtype=np.float64)
     if not np.isfinite(places).all() or not is_known.any():
@@ -83,10 +81,8 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     )
     for _ in range(2):
         table = _finer(table, factor).swapaxes(0, 1)
-    high, wide = table.shape[:2]
-    ids = np.arange(high * wide).reshape(high, wide)
-    a, b, c, d = ids[:-1, :-1], ids[:-1, 1:], ids[1:, 1:], ids[1:, :-1]
-    faces = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+    quads = lattice.cells(table.shape[:2], (False, False))
+    faces = quads[:, [0, 3, 2, 0, 2, 1]].reshape(-1, 3)
     points = table[..., :3].reshape(-1, 3)
     smooth = blocks.polydata(points, faces)
     smooth.point_data[name] = table[..., 3].ravel()
@@ -96,8 +92,7 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
         missing.point_data[name] = np.full(missing.n_points, np.nan)
         smooth = smooth.append_polydata(missing)
         del smooth.point_data[SHARE]
-    for key in mesh.field_data:
-        smooth.field_data[key] = mesh.field_data[key]
+    smooth.field_data.update(mesh.field_data)
     return smooth
 
 
