@@ -37,9 +37,11 @@ def test_colours_of_vertices_and_of_faces(tmp_path):
     np.testing.assert_array_equal(whole.cell_data["color"], [[255, 128, 0]])
 
 
-def test_normals(tmp_path):
-    mesh = read(tmp_path, "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n")
+def test_normals_and_colours(tmp_path):
+    rows = "0 0 0 0 0 1 1 0 0", "1 0 0 0 0 1 0 2 0", "0 1 0 0 0 1 0 0 2"
+    mesh = read(tmp_path, "CNOFF\n3 1 0\n" + "\n".join(rows) + "\n3 0 1 2\n")
     np.testing.assert_array_equal(mesh.point_data.active_normals, [[0, 0, 1]] * 3)
+    np.testing.assert_array_equal(mesh["color"], np.diag([1, 2, 2]))
 
 
 @pytest.mark.parametrize("head", ["4OFF\n3 1 0\n", "nOFF 4\n3 1 0\n", "nOFF\n4\n3 1 0\n"])
@@ -57,6 +59,7 @@ def test_a_mesh_of_4_space_is_closed_where_it_says_so(tmp_path):
     assert mesh["position"].shape == (12, 4)
     heights = read(tmp_path, "ZMESH 3 2\n0 1 2\n3 4 5\n", "heights.mesh")
     np.testing.assert_array_equal(heights.points[4], [1, 1, 4])
+    np.testing.assert_array_equal(heights.cells, [4, 0, 1, 4, 3, 4, 1, 2, 5, 4])
 
 
 test_what_is_not_whole_is_refused = refused_files(
