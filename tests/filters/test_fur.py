@@ -148,6 +148,10 @@ def test_bent_and_curled_fibres_lean_where_they_are_told():
     )
     curled = strands(fur(mesh, SCENE, curl=1.0, turns=2.0, **options), 6)
     assert np.linalg.norm(curled[:, -1] - straight[:, -1], axis=1).min() > 0.01
+    # Each begins to curl in a direction of its own.
+    ends = strands(fur(pv.Plane(), SCENE, curl=1.0, **options), 6)
+    aside = (ends[:, -1] - ends[:, 0])[:, :2]
+    assert np.linalg.norm(aside.mean(axis=0)) < 0.2 * np.linalg.norm(aside, axis=1).mean()
 
 
 def test_vectors_that_point_inward_are_reversed_and_counted():
