@@ -120,7 +120,7 @@ def key(
         steps = [i / len(names) for i in range(1, len(names))]
     facts = _question(topic)
     x, y, faces = _bar(steps) if facts.is_bar else _disc(HOLE * (facts.key == "disc"))
-    mesh = polydata(np.stack([x, y, 0 * x], axis=1), faces[:, [0, 3, 2, 1]])
+    mesh = polydata(np.stack([x, y, 0 * x], axis=1), faces)
     mesh[RGB] = colors_of(
         scene, x, y, question=topic, exponent=exponent, conditioned=conditioned, cmap=cmap
     )
@@ -383,7 +383,7 @@ def _disc(hole: float) -> tuple[Array, Array, Indices]:
     radii = np.sin(np.linspace(np.arcsin(hole), np.pi / 2, RINGS))
     angles = 2 * np.pi * np.arange(AROUND) / AROUND
     x, y = np.outer(radii, np.cos(angles)), np.outer(radii, np.sin(angles))
-    return x.ravel(), y.ravel(), lattice.cells(x.shape, (False, True))
+    return x.ravel(), y.ravel(), lattice.cells(x.shape, (False, True), by_rows=True)
 
 
 def _bar(steps: Sequence[float]) -> tuple[Array, Array, Indices]:
@@ -391,4 +391,4 @@ def _bar(steps: Sequence[float]) -> tuple[Array, Array, Indices]:
     beside = [2 * step - 1 + side * EDGE for step in steps for side in (-1, 1)]
     columns = np.unique(np.clip([*np.linspace(-1, 1, ALONG), *beside], -1, 1))
     x, y = np.meshgrid(columns, np.linspace(-BAR, BAR, 9))
-    return x.ravel(), y.ravel(), lattice.cells(x.shape, (False, False))
+    return x.ravel(), y.ravel(), lattice.cells(x.shape, (False, False), by_rows=True)

@@ -7,7 +7,6 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._types import Array
-from vizlight.geometry.nspace import lattice
 from vizlight.mesh import blocks, records
 
 #: Types of grids that may have one layer.
@@ -81,8 +80,10 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     )
     for _ in range(2):
         table = _finer(table, factor).swapaxes(0, 1)
-    quads = lattice.cells(table.shape[:2], (False, False))
-    faces = quads[:, [0, 3, 2, 0, 2, 1]].reshape(-1, 3)
+    high, wide = table.shape[:2]
+    ids = np.arange(high * wide).reshape(high, wide)
+    a, b, c, d = ids[:-1, :-1], ids[:-1, 1:], ids[1:, 1:], ids[1:, :-1]
+    faces = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
     points = table[..., :3].reshape(-1, 3)
     smooth = blocks.polydata(points, faces)
     smooth.point_data[name] = table[..., 3].ravel()

@@ -291,7 +291,7 @@ def of_grid(grid: pv.StructuredGrid, there: Bools) -> tuple[pv.PolyData | pv.Uns
     nx, ny, nz = grid.dimensions
     x, y, z = np.asarray(grid.points, dtype=np.float64).T.reshape(3, nz, ny * nx)
     is_closed = _is_closed(x[0].reshape(ny, nx), y[0].reshape(ny, nx), there)
-    quads = lattice.cells((ny, nx), (False, is_closed))[:, [0, 3, 2, 1]]
+    quads = lattice.cells((ny, nx), (False, is_closed), by_rows=True)
     kept = quads[there.ravel()[quads].all(axis=1)]
     faces = unrolled(x[0], y[0], kept, np.ones(kept.shape, np.bool_))
     mesh = faces.mesh() if nz == 1 else _between(faces, z[:, 0])

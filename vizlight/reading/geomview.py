@@ -139,8 +139,8 @@ def read_mesh(path: Path) -> pv.PolyData:
         grid = np.indices((rows, columns)).reshape(2, -1)[::-1].T
         table, place = np.hstack([grid, table]), 3
     mesh = _with_vertices(table, place, bool(normal), bool(coloured), textured=False)
-    corners = lattice.cells((rows, columns), (v is not None, u is not None))[:, [0, 3, 2, 1]]
-    mesh.SetPolys(pv.CellArray.from_regular_cells(corners.astype(int)))
+    corners = lattice.cells((rows, columns), (v is not None, u is not None), by_rows=True)
+    mesh.SetPolys(pv.CellArray.from_regular_cells(corners.astype(int, copy=False)))
     return mesh
 
 
