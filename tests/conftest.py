@@ -89,6 +89,18 @@ def few_strokes(monkeypatch):
 
 
 @pytest.fixture
+def calls_of(monkeypatch):
+    """Return a function that lists the arguments of the calls of one of a module or class."""
+
+    def listed(owner, name):
+        calls, plain = [], getattr(owner, name)
+        monkeypatch.setattr(owner, name, lambda *a, **k: calls.append(a) or plain(*a, **k))
+        return calls
+
+    return listed
+
+
+@pytest.fixture
 def random():
     """Return a generator; its seed is another for ``python tests/claims.py --seed``."""
     return np.random.default_rng(int(os.environ.get("VIZLIGHT_SEED", "1994")))

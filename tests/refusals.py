@@ -3,6 +3,9 @@
 import functools
 import re
 
+import pytest
+
+import vizlight
 from vizlight.files import FileError
 
 
@@ -35,3 +38,21 @@ def refused_files(read, *rows):
         refusals(functools.partial(read, tmp_path), *rows, kind=FileError)()
 
     return test
+
+
+def saved(path, content):
+    """Return the path of a file with some content, text or bytes."""
+    (path.write_text if isinstance(content, str) else path.write_bytes)(content)
+    return path
+
+
+def refused(path, words):
+    """Check that a file is not read, and the words of the error."""
+    with pytest.raises(FileError, match=words):
+        vizlight.read(path)
+
+
+def read_warned(path, words):
+    """Return what a file has, and check the words of a warning."""
+    with pytest.warns(UserWarning, match=words):
+        return vizlight.read(path)

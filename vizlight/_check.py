@@ -5,6 +5,7 @@ They raise TypeError for a value of the wrong type, ValueError for a wrong shape
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import functools
 import math
@@ -14,7 +15,7 @@ import re
 import sys
 import threading
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import UnionType
 
@@ -52,6 +53,17 @@ _OTHERS = {
     "k": "000000", "w": "ffffff",
     "pv": "54596d", "paraview": "54596d", "paraviewwarm": "625d5a", "lightgoldenrod": "fafad2",
 }  # fmt: skip
+
+
+@contextlib.contextmanager
+def in_block(path: str) -> Iterator[None]:
+    """Name the block of a mesh in an error, of the same kind, unless the path is empty."""
+    try:
+        yield
+    except (TypeError, ValueError) as error:
+        if not path:
+            raise
+        raise type(error)(f"block {path}: {error}") from error
 
 
 class held:  # noqa: N801 - used as a function

@@ -14,7 +14,6 @@ from vizlight import _pool
 from vizlight.draw import live
 from vizlight.filters import relight
 from vizlight.geometry.lines import bundle as geometry
-from vizlight.geometry.lines import cylinders
 from vizlight.mesh import bundles
 from vizlight.shading import engine
 from vizlight.shading.options import LightOptions
@@ -73,30 +72,21 @@ def test_the_reference_of_a_check_takes_the_shares_too(skylit):
     assert report.runs[0].sample == 60
 
 
-def test_what_has_not_changed_is_not_computed_again(monkeypatch):
-    asked = []
-    dimmed = geometry.Medium.dimmed
-
-    def counted(self, targets, diameter, lights, **options):
-        asked.append(len(lights))
-        return dimmed(self, targets, diameter, lights, **options)
-
-    monkeypatch.setattr(geometry.Medium, "dimmed", counted)
+def test_what_has_not_changed_is_not_computed_again(calls_of):
+    calls = calls_of(geometry.Medium, "dimmed")
     lit = vizlight.illuminate(lines(), SCENE, bundle=QUICK)
     turned = vizlight.illuminate(
         lit, SCENE.replace(view=vizlight.View(direction=(1, 0, 0))), bundle=QUICK
     )
-    assert asked == [2]
     assert np.array_equal(turned["transmittance"], lit["transmittance"])
     assert not np.array_equal(turned["luminance"], lit["luminance"])
     head = SCENE.replace(lights=[NEAR, vizlight.Light.headlight()])
     other = vizlight.illuminate(turned, head, bundle=QUICK)
-    assert asked[1:] == [1]
     assert np.array_equal(other["transmittance"][:, 0], lit["transmittance"][:, 1])
     other.points[0, 0] += 0.1
     vizlight.illuminate(other, head, bundle=QUICK)
     vizlight.illuminate(lit, SCENE, bundle=dataclasses.replace(QUICK, depth=1.0))
-    assert asked[2:] == [2, 2]
+    assert [len(lights) for _, _, _, lights in calls] == [2, 1, 2, 2]
     bare = vizlight.illuminate(lit, SCENE)
     assert "transmittance" not in bare.point_data
 
@@ -112,21 +102,15 @@ def test_the_same_with_any_number_of_threads():
     assert np.array_equal(one["sky"], two["sky"])
 
 
-def test_the_record_has_the_errors_of_each_light_and_a_check_prints_them(monkeypatch):
+def test_the_record_has_the_errors_of_each_light_and_a_check_prints_them(calls_of):
     lit = vizlight.illuminate(lines(), SCENE, bundle=QUICK)
     record = vizlight.provenance(lit)["bundle"]
     assert all(0.02 < mean < error < 1 for mean, error in zip(*errors_of(record), strict=True))
     text = f"error {max(record['error']):.2g} or less at 95 of 100 points, of the mean share"
     assert text in str(vizlight.check(lit, sample=5))
-    measured = []
-
-    def counted(*values):
-        measured.append(values[3])
-        return cylinders.missed(*values)
-
-    monkeypatch.setattr(bundles, "missed", counted)
+    measured = calls_of(bundles, "missed")
     other = vizlight.illuminate(lit, SCENE.replace(lights=[NEAR, FAR, ABOVE]), bundle=QUICK)
-    assert measured == [ABOVE.direction]
+    assert [values[3] for values in measured] == [ABOVE.direction]
     again = vizlight.provenance(other)["bundle"]
     for kept, first in zip(errors_of(again), errors_of(record), strict=True):
         assert kept[:2] == first[::-1]

@@ -218,13 +218,6 @@ def test_silhouettes_in_float32(random):
     np.testing.assert_array_equal(out["projected_frame"][:, 3:], 0)
 
 
-def test_no_tangents_named_are_the_frame(torus):
-    for when, scene in (("before", SCENE4), ("after", SCENE3)):
-        one = project(torus, scene=scene, light=when, distance=3.0)
-        other = project(torus, scene=scene, light=when, distance=3.0, tangents=None)
-        np.testing.assert_array_equal(one["luminance"], other["luminance"])
-
-
 def test_sheets_that_fall_on_each_other_stay_apart_in_a_cut():
     """Both halves of the 3-sphere project to one ball: places in 3-space must join nothing."""
     shape = sphere3(4)

@@ -424,14 +424,11 @@ def test_a_plane_is_lit_alike_at_its_border_and_beside_a_hole(hole):
         np.testing.assert_allclose(t[there], max(cosine, 0), atol=0.01 if cosine > 0 else 0.05)
 
 
-def test_a_shadow_is_cast_once_for_a_field_and_its_picture(monkeypatch):
+def test_a_shadow_is_cast_once_for_a_field_and_its_picture(calls_of):
     field = pv.ImageData(dimensions=(12, 12, 1))
     field["height"] = 2 * np.sin(np.arange(144.0))
     shadowed = relief_shadow(field, sun=(315, 40), lit=True)
-    cast, ratios = [], Shadows.ratios
-    monkeypatch.setattr(
-        Shadows, "ratios", lambda *args, **options: cast.append(1) or ratios(*args, **options)
-    )
+    cast = calls_of(Shadows, "ratios")
     (source,), _ = relight.from_record(shadowed)
     assert not cast
     np.testing.assert_array_equal(source.inputs.shadow[:, 0], shadowed["t"])
@@ -447,7 +444,7 @@ def test_a_shadow_is_cast_once_for_a_field_and_its_picture(monkeypatch):
 
 
 @pytest.mark.parametrize("kind", ["field", "ball"])
-def test_shadows_of_several_lights_are_kept_with_their_components(kind, monkeypatch):
+def test_shadows_of_several_lights_are_kept_with_their_components(kind, calls_of):
     mesh = pv.Sphere()
     if kind == "field":
         mesh = pv.ImageData(dimensions=(12, 12, 1))
@@ -456,11 +453,7 @@ def test_shadows_of_several_lights_are_kept_with_their_components(kind, monkeypa
     lit = relief_shadow(mesh, Scene(lights=lights), lit=True, components=True)
     moved = lit.translate((1.0, 0, 0)) if kind == "ball" else lit.copy()
     moved["t_0"] = np.array(moved["t_0"]) if kind == "ball" else 0.5 * moved["t_0"]
-    cast = []
-    ratios = Shadows.ratios
-    monkeypatch.setattr(
-        Shadows, "ratios", lambda *args, **how: cast.append(1) or ratios(*args, **how)
-    )
+    cast = calls_of(Shadows, "ratios")
     (source,), _ = relight.from_record(lit)
     np.testing.assert_array_equal(source.inputs.shadow, np.stack([lit["t_0"], lit["t_1"]], axis=1))
     assert not cast

@@ -210,13 +210,11 @@ def test_result_replaces_the_one_before_and_no_array_of_the_user():
 @pytest.mark.parametrize(
     ("material", "components", "runs"), [("matte", False, 0), ("dark", True, 0), ("dark", False, 1)]
 )
-def test_light_is_computed_at_most_once(material, components, runs, monkeypatch):
+def test_light_is_computed_at_most_once(material, components, runs, calls_of):
     """Not at all where the mesh carries it."""
     scene = SCENE.replace(material=MATERIALS[material])
     lit = vizlight.illuminate(ball(), scene, components=components)
-    calls = []
-    light = engine.run
-    monkeypatch.setattr(engine, "run", lambda *run, **how: calls.append(run) or light(*run, **how))
+    calls = calls_of(engine, "run")
     tint(lit, "height")
     assert len(calls) == runs
 

@@ -76,15 +76,12 @@ def test_a_mesh_and_its_picture_are_without_them():
     assert "taken for missing" not in str(kept)
 
 
-def test_arrays_of_a_grid_of_a_file_are_searched_once(tmp_path, monkeypatch):
+def test_arrays_of_a_grid_of_a_file_are_searched_once(calls_of):
     xarray = pytest.importorskip("xarray")
     rows = np.where(np.eye(8) > 0, -9999.0, np.add.outer(np.arange(8.0), np.arange(8.0)))
     data = xarray.Dataset({name: (("y", "x"), rows + i) for i, name in enumerate("ab")})
-    plain, names = fills.without_missing, []
-    monkeypatch.setattr(
-        fills, "without_missing", lambda *args: names.append(args[0]) or plain(*args)
-    )
+    calls = calls_of(fills, "without_missing")
     with pytest.warns(match="taken for missing"):
         look = vizlight.look(data)
-    assert names == ["a", "b"]
+    assert [name for name, *_ in calls] == ["a", "b"]
     assert look.drawing.keys[0]["clim"] == (1.0, 13.0)

@@ -60,7 +60,7 @@ def test_few_slices_far_apart_are_drawn_as_a_sheet():
 test_a_sheet_needs_a_stack_and_its_array = refusals(
     files.side_by_side,
     (pv.Sphere(), "scan", "volume: expected an image or a grid"),
-    (stack(), "other", "name: expected the name of a point array of one component, one of"),
+    (stack(), "other", "name: expected a point array of one component, one of"),
     (stack(), 3, "name: expected the name of a point array"),
     kind=(TypeError, ValueError),
 )

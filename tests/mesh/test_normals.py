@@ -186,9 +186,8 @@ def test_what_is_no_soup_is_the_same_mesh():
     assert welded(lines) is lines
 
 
-def test_normals_for_an_eye_are_computed_once(monkeypatch):
-    computed, calls = normals._computed, []
-    monkeypatch.setattr(normals, "_computed", lambda *a, **k: calls.append(k) or computed(*a, **k))
+def test_normals_for_an_eye_are_computed_once(calls_of):
+    calls = calls_of(normals, "_computed")
     view = View(direction=(0, 0, -1))
     sheet, ball = plain(pv.Plane(i_size=0.7)), plain(pv.Sphere(radius=0.7))
     assert np.all(normals_of(sheet, None, 3, view)[:, 2] < 0)

@@ -55,7 +55,7 @@ test_what_does_not_fit = refusals(
     smoothed,
     (pv.Plane(), "v", 2, "mesh: expected a grid", TypeError),
     (pv.ImageData(dimensions=(3, 3, 3)), "v", 2, "mesh: expected a grid of one"),
-    (grid(), "w", 2, "name: expected the name of an array"),
+    (grid(), "w", 2, "name: expected a point array of one component"),
     (grid(), "v", 0, "factor"),
 )
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import refused, saved
 
 import vizlight
 from vizlight import files
-from vizlight.files import FileError
 from vizlight.mesh import meaning
 from vizlight.reading.cubes import BOHR
 
@@ -70,8 +70,7 @@ def test_orbitals_are_arrays_of_their_numbers(tmp_path):
 def test_a_comment_that_names_values_is_their_name(tmp_path, comments, name, unit):
     path = written(tmp_path)
     lines = path.read_text().splitlines()
-    path.write_text("\n".join([*comments, *lines[2:]]))
-    mesh = vizlight.read(path)
+    mesh = vizlight.read(saved(path, "\n".join([*comments, *lines[2:]])))
     assert mesh.point_data.keys() == [name]
     assert meaning.of(mesh).arrays.get(name, {}).get("units", "") == unit
 
@@ -87,8 +86,7 @@ def test_atoms_are_in_the_space_of_the_values(tmp_path):
 
 
 def test_a_cube_that_is_cut_short_is_refused(tmp_path):
-    with pytest.raises(FileError, match="23 of 24 values are there"):
-        vizlight.read(written(tmp_path, values=VALUES[:-3]))
+    refused(written(tmp_path, values=VALUES[:-3]), "23 of 24 values are there")
 
 
 DX = """# a potential
@@ -106,16 +104,12 @@ attribute "dep" string "positions"
 
 def test_values_of_opendx_are_at_their_places(tmp_path):
     path = tmp_path / "potential.dx"
-    path.write_text(DX.format(VALUES))
-    mesh = vizlight.read(path)
+    mesh = vizlight.read(saved(path, DX.format(VALUES)))
     assert mesh["potential"][mesh.find_closest_point([1.5, 3.0, 9.0])] == 12 + 4 + 3
     path.write_text(
         DX.format(VALUES).replace("rank 0", "rank 1 shape 3").replace(VALUES, "0 1 2 " * 24)
     )
     assert vizlight.read(path)["potential"].tolist() == [[0, 1, 2]] * 24
-    path.write_text(DX.format("1 2"))
-    with pytest.raises(FileError, match="of 24 values are there"):
-        vizlight.read(path)
+    refused(saved(path, DX.format("1 2")), "of 24 values are there")
     path.write_text("object 1 class array type float rank 1 shape 2 items 1 data follows\n1 2\n")
-    with pytest.raises(FileError, match="it is no regular grid in space"):
-        vizlight.read(path)
+    refused(path, "it is no regular grid in space")

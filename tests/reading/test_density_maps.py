@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import refused, saved
 
 import vizlight
 
@@ -47,6 +48,4 @@ def test_cells_without_right_angles_are_slanted(tmp_path):
 def test_short_maps_are_refused(tmp_path):
     density_map(tmp_path / "a.mrc", np.ones((4, 3, 2), np.float32), 90, 90, 90)
     data = (tmp_path / "a.mrc").read_bytes()
-    (tmp_path / "a.mrc").write_bytes(data[:-8])
-    with pytest.raises(vizlight.files.FileError, match=r"a\.mrc"):
-        vizlight.read(tmp_path / "a.mrc")
+    refused(saved(tmp_path / "a.mrc", data[:-8]), r"a\.mrc")

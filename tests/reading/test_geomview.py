@@ -5,18 +5,16 @@ import gzip
 import numpy as np
 import pytest
 import pyvista as pv
-from refusals import refused_files
+from refusals import refused, refused_files, saved
 
 import vizlight
-from vizlight.files import FileError
 
 SQUARE = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
 
 
 def read(folder, text, name="a.off"):
     path = folder / name
-    path.write_text(text)
-    return vizlight.read(path)
+    return vizlight.read(saved(path, text))
 
 
 @pytest.mark.parametrize(
@@ -39,9 +37,11 @@ def test_colours_of_vertices_and_of_faces(tmp_path):
     np.testing.assert_array_equal(whole.cell_data["color"], [[255, 128, 0]])
 
 
-def test_normals(tmp_path):
-    mesh = read(tmp_path, "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n")
+def test_normals_and_colours(tmp_path):
+    rows = "0 0 0 0 0 1 1 0 0", "1 0 0 0 0 1 0 2 0", "0 1 0 0 0 1 0 0 2"
+    mesh = read(tmp_path, "CNOFF\n3 1 0\n" + "\n".join(rows) + "\n3 0 1 2\n")
     np.testing.assert_array_equal(mesh.point_data.active_normals, [[0, 0, 1]] * 3)
+    np.testing.assert_array_equal(mesh["color"], np.diag([1, 2, 2]))
 
 
 @pytest.mark.parametrize("head", ["4OFF\n3 1 0\n", "nOFF 4\n3 1 0\n", "nOFF\n4\n3 1 0\n"])
@@ -59,6 +59,7 @@ def test_a_mesh_of_4_space_is_closed_where_it_says_so(tmp_path):
     assert mesh["position"].shape == (12, 4)
     heights = read(tmp_path, "ZMESH 3 2\n0 1 2\n3 4 5\n", "heights.mesh")
     np.testing.assert_array_equal(heights.points[4], [1, 1, 4])
+    np.testing.assert_array_equal(heights.cells, [4, 0, 1, 4, 3, 4, 1, 2, 5, 4])
 
 
 test_what_is_not_whole_is_refused = refused_files(
@@ -101,8 +102,7 @@ def test_places_of_ply_keep_their_digits(order, tmp_path):
         kind = np.dtype([("p", f"{order}f8", 3), ("q", "u1")])
         body = np.array([(row, 7) for row in points], kind).tobytes()
         body += b"\x03" + np.arange(3).astype(f"{order}i4").tobytes()
-    (tmp_path / "a.ply").write_bytes(head.encode() + body)
-    found = vizlight.read(tmp_path / "a.ply").points
+    found = vizlight.read(saved(tmp_path / "a.ply", head.encode() + body)).points
     assert found.dtype == np.float64
     np.testing.assert_array_equal(np.unique(found, axis=0), np.unique(points, axis=0))
 
@@ -111,14 +111,9 @@ def test_packed_files(tmp_path):
     ball = pv.Sphere(theta_resolution=8, phi_resolution=8)
     ball.save(tmp_path / "a.stl")
     data = (tmp_path / "a.stl").read_bytes()
-    (tmp_path / "b.stl.gz").write_bytes(gzip.compress(data))
-    assert vizlight.read(tmp_path / "b.stl.gz").n_cells == ball.n_cells
-    (tmp_path / "c.stl.gz").write_bytes(gzip.compress(data)[:-20])
-    with pytest.raises(FileError, match="not damaged.*c.stl.gz"):
-        vizlight.read(tmp_path / "c.stl.gz")
-    (tmp_path / "d.stl.gz").write_bytes(gzip.compress(data[:200]))
-    with pytest.raises(FileError, match="d.stl.gz"):
-        vizlight.read(tmp_path / "d.stl.gz")
+    assert vizlight.read(saved(tmp_path / "b.stl.gz", gzip.compress(data))).n_cells == ball.n_cells
+    refused(saved(tmp_path / "c.stl.gz", gzip.compress(data)[:-20]), "not damaged.*c.stl.gz")
+    refused(saved(tmp_path / "d.stl.gz", gzip.compress(data[:200])), "d.stl.gz")
 
 
 def test_lines_may_break_anywhere(tmp_path):

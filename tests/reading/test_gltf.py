@@ -6,9 +6,9 @@ import struct
 
 import numpy as np
 import pytest
+from refusals import refused, saved
 
 import vizlight
-from vizlight.files import FileError
 
 GLTF = {
     "asset": {"version": "2.0"},
@@ -48,8 +48,7 @@ WRONG = {
 
 
 def test_a_whole_file_is_read(tmp_path):
-    (tmp_path / "a.gltf").write_bytes(gltf())
-    assert vizlight.read(tmp_path / "a.gltf").n_points == 3
+    assert vizlight.read(saved(tmp_path / "a.gltf", gltf())).n_points == 3
 
 
 def test_shapes_of_an_animation_are_no_vectors(tmp_path):
@@ -62,9 +61,7 @@ def test_shapes_of_an_animation_are_no_vectors(tmp_path):
 @pytest.mark.parametrize("kind", WRONG)
 def test_parts_that_do_not_fit_are_refused(kind, tmp_path):
     content, words = WRONG[kind]
-    (tmp_path / "a.gltf").write_bytes(content)
-    with pytest.raises(FileError, match=words):
-        vizlight.read(tmp_path / "a.gltf")
+    refused(saved(tmp_path / "a.gltf", content), words)
 
 
 def test_colours_of_gltf_are_bytes(tmp_path):

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import saved
 
 from vizlight import files
 from vizlight.reading import kratos
@@ -69,7 +70,6 @@ def test_corners_of_20_are_in_the_order_of_vtk(tmp_path):
     ("rows", "words"), [((0, 7, 3, 8), "no node"), ((0, 7, 3, 9, 4, 5), "5 corners are unknown")]
 )
 def test_cells_that_cannot_be_are_refused(rows, words, tmp_path):
-    path = tmp_path / "a.mdpa"
-    path.write_text(NODES + block("Elements", "Element2D3N", rows))
+    path = saved(tmp_path / "a.mdpa", NODES + block("Elements", "Element2D3N", rows))
     with pytest.raises(files.FileError, match=words):
         files.read(path)

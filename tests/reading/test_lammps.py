@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from refusals import refused_files
+from refusals import read_warned, refused, refused_files, saved
 
 import vizlight
-from vizlight.files import FileError
 from vizlight.mesh import meaning
 
 HEAD = "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS {}\n{}\nITEM: ATOMS {}\n"
@@ -15,17 +14,14 @@ COLUMNS = "id type x y z q vx vy vz"
 
 
 def written(folder, *steps, name="a.lammpstrj"):
-    path = folder / name
-    path.write_text("".join(f"{head}{chr(10).join(rows)}\n" for head, rows in steps))
-    return path
+    return saved(folder / name, "".join(f"{head}{chr(10).join(rows)}\n" for head, rows in steps))
 
 
 @pytest.mark.parametrize("name", ["a.lammpstrj", "a.dump"])
 def test_atoms_of_the_first_step_are_in_the_order_of_their_numbers(tmp_path, name):
     step = HEAD.format(0, 3, "pp pp pp", BOX, COLUMNS), ROWS
     later = HEAD.format(9, 3, "pp pp pp", BOX, COLUMNS), ["1 1 0 0 0 0 0 0 0"] * 3
-    with pytest.warns(UserWarning, match="the first of 2 states"):
-        mesh = vizlight.read(written(tmp_path, step, later, name=name))
+    mesh = read_warned(written(tmp_path, step, later, name=name), "the first of 2 states")
     np.testing.assert_array_equal(mesh.points, [[1, 2, 3], [3, 4, 7], [5, 6, 11]])
     assert mesh["atom_type"].tolist() == [1, 2, 1]
     assert meaning.flags(mesh, "atom_type") == {1: "type 1", 2: "type 2"}
@@ -64,6 +60,4 @@ test_damaged_dumps_are_refused = refused_files(
 
 def test_other_dumps_and_trajectories_are_none(tmp_path):
     for name, words in (("a.dump", "no reader takes '.dump'"), ("a.xtc", r"as \.pdb, \.cif or")):
-        (tmp_path / name).write_bytes(b"something else\n")
-        with pytest.raises(FileError, match=words):
-            vizlight.read(tmp_path / name)
+        refused(saved(tmp_path / name, b"something else\n"), words)

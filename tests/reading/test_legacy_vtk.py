@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import read_warned, refused, saved
 
 import vizlight
 from vizlight.files import FileError
@@ -70,40 +71,33 @@ WRONG = {
 
 @pytest.mark.parametrize("name", WHOLE)
 def test_whole_files_are_read(name, tmp_path):
-    (tmp_path / name).write_bytes(WHOLE[name])
-    assert vizlight.read(tmp_path / name).n_points > 2
+    assert vizlight.read(saved(tmp_path / name, WHOLE[name])).n_points > 2
 
 
 @pytest.mark.parametrize("kind", WRONG)
 def test_numbers_that_contradict_each_other_are_refused(kind, tmp_path):
     content, words = WRONG[kind]
-    (tmp_path / "a.vtk").write_bytes(content)
-    with pytest.raises(FileError, match=words):
-        vizlight.read(tmp_path / "a.vtk")
+    refused(saved(tmp_path / "a.vtk", content), words)
 
 
 @pytest.mark.filterwarnings("default:.*may be cut")
 def test_a_file_that_ends_within_a_line(tmp_path):
-    (tmp_path / "a.vtk").write_bytes(FIELD[:-1])
-    with pytest.warns(UserWarning, match="may be cut in its last line"):
-        vizlight.read(tmp_path / "a.vtk")
+    read_warned(saved(tmp_path / "a.vtk", FIELD[:-1]), "may be cut in its last line")
 
 
 def test_a_legacy_file_that_ends_before_its_cells(tmp_path):
     path = tmp_path / "a.vtk"
     pv.ImageData(dimensions=(4, 3, 5)).cast_to_unstructured_grid().save(path, binary=False)
-    path.write_text(path.read_text().partition("CELLS")[0] + "METADATA\n")
     with pytest.raises(FileError, match="its last block is not whole"):
-        vizlight.read(path)
+        vizlight.read(saved(path, path.read_text().partition("CELLS")[0] + "METADATA\n"))
 
 
 @pytest.mark.parametrize("word", [b"CELLS", b"CELL_TYPES"])
 def test_cells_without_their_number_or_their_types(word, tmp_path):
     pv.ImageData(dimensions=(3, 3, 2)).to_tetrahedra().save(tmp_path / "a.vtk", binary=False)
     data = (tmp_path / "a.vtk").read_bytes()
-    (tmp_path / "a.vtk").write_bytes(data.replace(b"\n" + word + b" ", b"\n"))
     with pytest.raises(FileError, match="a list of cells has no number|its cells have no types"):
-        vizlight.read(tmp_path / "a.vtk")
+        vizlight.read(saved(tmp_path / "a.vtk", data.replace(b"\n" + word + b" ", b"\n")))
 
 
 def test_arrays_that_vtk_skips(tmp_path):
@@ -111,9 +105,8 @@ def test_arrays_that_vtk_skips(tmp_path):
     mesh["a"] = np.arange(6.0)
     mesh.save(tmp_path / "a.vtk")
     data = (tmp_path / "a.vtk").read_bytes()
-    (tmp_path / "a.vtk").write_bytes(data.replace(b"LOOKUP_TABLE default\n", b""))
     with pytest.raises(FileError, match="0 of 1 arrays are there"):
-        vizlight.read(tmp_path / "a.vtk")
+        vizlight.read(saved(tmp_path / "a.vtk", data.replace(b"LOOKUP_TABLE default\n", b"")))
 
 
 @pytest.mark.parametrize("binary", [False, True])
@@ -147,5 +140,4 @@ def test_numbers_that_a_type_does_not_hold_are_refused(tmp_path, kind, word, is_
     if is_held:
         assert vizlight.read(path)["pair"].shape == (3, 2)
     else:
-        with pytest.raises(vizlight.files.FileError, match=f"{word} of a field is beyond the type"):
-            vizlight.read(path)
+        refused(path, f"{word} of a field is beyond the type")

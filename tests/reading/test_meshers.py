@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import read_warned, refused, saved
 
 import vizlight
 from vizlight import files
@@ -60,18 +61,15 @@ def test_a_tetrahedron_in_a_file_that_meshio_reads(tmp_path):
 def test_a_mesh_of_gmsh(tmp_path):
     pytest.importorskip("meshio")
     path = tmp_path / "part.msh"
-    path.write_text(GMSH)
-    mesh = vizlight.read(path)
+    mesh = vizlight.read(saved(path, GMSH))
     # The edge of the shape, on which the triangle has a side, is none of the mesh.
     assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
     assert mesh.cell_data.keys() == ["gmsh:geometrical"]
     of_one = '$ElementData\n1\n"p"\n1\n0\n3\n0\n1\n1\n2 5\n$EndElementData\n'
-    path.write_text(GMSH + of_one)
     with pytest.warns(UserWarning, match="its values of some cells alone are left out"):
-        assert vizlight.read(path).n_cells == 1
-    path.write_text(GMSH.replace("2 2 1 2", "2 3 1 3"))
+        assert vizlight.read(saved(path, GMSH + of_one)).n_cells == 1
     with pytest.warns(UserWarning, match="gives 2 of the 3 cells that it states"):
-        vizlight.read(path)
+        vizlight.read(saved(path, GMSH.replace("2 2 1 2", "2 3 1 3")))
 
 
 def test_an_edge_of_a_mesher_that_no_face_has_is_named(tmp_path):
@@ -79,8 +77,7 @@ def test_an_edge_of_a_mesher_that_no_face_has_is_named(tmp_path):
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [3, 0, 0]], dtype=float)
     path = tmp_path / "part.mesh"
     meshio.Mesh(points, [("triangle", [[0, 1, 2]]), ("line", [[1, 3]])]).write(path)
-    with pytest.warns(UserWarning, match="left out: cells of lower dimension"):
-        mesh = vizlight.read(path)
+    mesh = read_warned(path, "left out: cells of lower dimension")
     assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
 
 
@@ -97,8 +94,7 @@ def test_references_of_points_leave_their_name_to_those_of_cells(tmp_path):
 def test_a_mesh_of_one_dimension(tmp_path):
     pytest.importorskip("meshio")
     head = "MeshVersionFormatted 2\nDimension 1\nVertices\n2\n"
-    (tmp_path / "a.mesh").write_text(f"{head}0.0 0\n1.5 1\nEdges\n1\n1 2 0\nEnd\n")
-    mesh = vizlight.read(tmp_path / "a.mesh")
+    mesh = vizlight.read(saved(tmp_path / "a.mesh", f"{head}0.0 0\n1.5 1\nEdges\n1\n1 2 0\nEnd\n"))
     np.testing.assert_array_equal(mesh.points, [[0, 0, 0], [1.5, 0, 0]])
     assert mesh.n_cells == 1
 
@@ -109,18 +105,15 @@ def test_an_array_of_meshio_without_rows_for_some_cells_is_left_out(tmp_path):
     grids = [(1, 0, 0), (2, 1, 0), (3, 0, 1), (4, 1, 1)]
     lines = [f"GRID,{i},,{x}.0,{y}.0,0.0" for i, x, y in grids]
     lines += ["CBAR,1,,1,2", "CTRIA3,2,7,1,2,3", "CTRIA3,3,8,2,4,3"]
-    path.write_text("\n".join(["BEGIN BULK", *lines, "ENDDATA", ""]))
     with pytest.warns(UserWarning, match=r"'nastran:ref' has 2 rows for 3 cells, and is left out"):
-        mesh = vizlight.read(path)
+        mesh = vizlight.read(saved(path, "\n".join(["BEGIN BULK", *lines, "ENDDATA", ""])))
     assert (mesh.n_points, mesh.array_names) == (4, [])
 
 
 def test_a_file_that_a_reader_of_meshio_refuses(tmp_path, capsys):
     pytest.importorskip("meshio")
     path = tmp_path / "a.wkt"
-    path.write_text("POINT (1 2)")
-    with pytest.raises(files.FileError, match=r"a\.wkt' \(Invalid WKT"):
-        vizlight.read(path)
+    refused(saved(path, "POINT (1 2)"), r"a\.wkt' \(Invalid WKT")
     assert capsys.readouterr().out == ""
 
 
@@ -129,9 +122,8 @@ def test_a_warning_of_a_reader_is_no_second_line(tmp_path):
     pytest.importorskip("meshio")
     path = tmp_path / "a.vol"
     rows = "1 0 0 0 0 1 2 3\n# none\n1 0 0 0 0 1 2 3\n"
-    path.write_text(f"mesh3d\ndimension\n3\ngeomtype\n0\nsurfaceelements\n2\n{rows}")
     with pytest.raises(files.FileError, match=r"a\.vol"):
-        vizlight.read(path)
+        vizlight.read(saved(path, f"mesh3d\ndimension\n3\ngeomtype\n0\nsurfaceelements\n2\n{rows}"))
 
 
 def test_a_file_of_avs_ucd_may_begin_with_comments(tmp_path):
@@ -139,9 +131,7 @@ def test_a_file_of_avs_ucd_may_begin_with_comments(tmp_path):
     path.write_text("# AVS UCD\n3 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 7 tri 1 2 3\n")
     mesh = vizlight.read(path)
     assert (mesh.n_points, mesh.n_cells) == (3, 1)
-    path.write_text("# AVS UCD\n3 1 0 0 0\n1 0 0 0\n")
-    with pytest.raises(files.FileError, match="2 of 5 lines of points and cells"):
-        vizlight.read(path)
+    refused(saved(path, "# AVS UCD\n3 1 0 0 0\n1 0 0 0\n"), "2 of 5 lines of points and cells")
 
 
 def test_groups_of_gmsh_have_words_for_titles(tmp_path):

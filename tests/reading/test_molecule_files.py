@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from refusals import refused_files
+from refusals import refused_files, saved
 
 import vizlight
 from vizlight.mesh import meaning
@@ -56,9 +56,7 @@ M  END
 
 
 def written(folder, text, name):
-    path = folder / name
-    path.write_text(text)
-    return path
+    return saved(folder / name, text)
 
 
 def test_atoms_of_gromacs_are_in_angstroms_with_their_elements(tmp_path):

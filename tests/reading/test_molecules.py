@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from refusals import refused_files
+from refusals import read_warned, refused, refused_files, saved
 
 import vizlight
 from vizlight.mesh import meaning
@@ -15,9 +15,7 @@ WATER = "3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n"
 
 
 def written(folder, text, name):
-    path = folder / name
-    path.write_text(text)
-    return path
+    return saved(folder / name, text)
 
 
 def test_the_first_of_several_models_is_read(tmp_path):
@@ -61,8 +59,7 @@ def test_atoms_of_xyz_are_joined_by_their_distances(tmp_path):
     assert meaning.flags(water, "atom_type") == {1: "H", 8: "O"}
     assert meaning.flags(water, "atom_type", "colors") == {1: "#e6e6e6", 8: "#ff0d0d"}
     far = WATER.replace("3", "4", 1) + "Na1 9 9 9\n"
-    with pytest.warns(UserWarning, match="the first of 2 states"):
-        salt = vizlight.read(written(tmp_path, far + far, "salt.xyz"))
+    salt = read_warned(written(tmp_path, far + far, "salt.xyz"), "the first of 2 states")
     assert (salt.n_points, salt.n_lines, salt.n_verts) == (4, 2, 1)
     assert salt["atom_type"][3] == 11
 
@@ -174,8 +171,7 @@ def test_records_of_cif_are_those_of_pdb(tmp_path):
     gemmi.read_pdb(str(path)).make_mmcif_document().write_file(str(tmp_path / "a.cif"))
     of_pdb, of_cif = vizlight.read(path), vizlight.read(tmp_path / "a.cif")
     for name in ("a.pdbx", "a.mmcif"):
-        (tmp_path / name).write_bytes((tmp_path / "a.cif").read_bytes())
-        assert vizlight.read(tmp_path / name) == of_cif
+        assert vizlight.read(saved(tmp_path / name, (tmp_path / "a.cif").read_bytes())) == of_cif
     assert of_pdb["secondary_structure"].max() == 2
     np.testing.assert_array_equal(of_cif["secondary_structure"], of_pdb["secondary_structure"])
 
@@ -309,8 +305,7 @@ def test_a_macromolecule_of_cif_is_that_of_pdb(tmp_path):
 )
 def test_a_cif_without_atoms_is_refused(tmp_path, text, said):
     pytest.importorskip("gemmi")
-    with pytest.raises(vizlight.files.FileError, match=said):
-        vizlight.read(written(tmp_path, text, "a.cif"))
+    refused(written(tmp_path, text, "a.cif"), said)
 
 
 def test_cations_of_a_crystal_are_not_joined_and_metals_are(tmp_path):

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from refusals import read_warned, refused, saved
 
 import vizlight
-from vizlight import files
 
 ROWS = ["# a comment", "1 1 0 0 0 5 -1", "2 3 1 0 0 1 1", "3 3 2 0 0 1 2", "5 2 0 1 0 2 1"]
 NAME = "path length from the root"
@@ -27,13 +27,10 @@ def test_a_neuron_has_branches_path_lengths_radii_and_types(path):
 
 def test_several_trees_and_circles(path):
     path.write_text("\n".join([*ROWS[:4], "5 2 0 1 0 2 9", "6 2 0 3 0 2 7", "7 2 0 4 0 2 6"]))
-    with pytest.warns(UserWarning, match="1 points follow others that are not there"):
-        mesh = vizlight.read(path)
+    mesh = read_warned(path, "1 points follow others that are not there")
     assert mesh.n_points == 6
     np.testing.assert_array_equal(mesh[NAME], [0, 1, 2, 0, np.nan, np.nan])
-    path.write_text("1 2 3\n")
-    with pytest.raises(files.FileError, match="3 columns, not the 7 of a neuron"):
-        vizlight.read(path)
+    refused(saved(path, "1 2 3\n"), "3 columns, not the 7 of a neuron")
 
 
 def test_a_neuron_shows_path_lengths_and_its_soma(path):

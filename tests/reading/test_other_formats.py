@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 from pyvista.core.utilities import reader
+from refusals import refused, saved
 
-import vizlight
-from vizlight.files import FileError
 from vizlight.reading import formats, other_formats
 
 
@@ -22,8 +21,7 @@ def test_no_reader_takes_them():
 
 
 def test_they_are_refused_before_a_reader_is_loaded(tmp_path):
-    path = tmp_path / "walk.xtc"
-    path.write_bytes(b"something")
+    path = saved(tmp_path / "walk.xtc", b"something")
     with pytest.raises(ValueError, match=r"no reader takes '.xtc' files; write a state of the mol"):
         other_formats.check(path)
     code = (
@@ -62,26 +60,21 @@ def test_formats_with_the_name_of_another_are_named_by_their_content(
     name, content, format_, tmp_path
 ):
     path = tmp_path / name
-    path.write_bytes(content)
-    with pytest.raises(FileError, match=f"a mesh that PyVista reads, got .*{format_}"):
-        vizlight.read(path)
+    refused(saved(path, content), f"a mesh that PyVista reads, got .*{format_}")
     path.write_bytes(b"ncols 3 <dolfin>\n")
     assert not other_formats.of_content(path)
 
 
 def test_a_file_that_is_none_of_tecplot_is_not_damaged(tmp_path):
     path = tmp_path / "a.dat"
-    path.write_bytes(b"1 2 3\n")
-    with pytest.raises(FileError, match="expected a file of Tecplot, got .*no VARIABLES and ZONE"):
-        vizlight.read(path)
+    refused(saved(path, b"1 2 3\n"), "expected a file of Tecplot, got .*no VARIABLES and ZONE")
 
 
 def test_hdf5_of_another_program_is_not_damaged(tmp_path):
     h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "a.hdf", "w") as file:
         file["where"] = [1.0]
-    with pytest.raises(FileError, match="expected a mesh of VTK in HDF5, got .*by xarray"):
-        vizlight.read(tmp_path / "a.hdf")
+    refused(tmp_path / "a.hdf", "expected a mesh of VTK in HDF5, got .*by xarray")
 
 
 def test_features_of_maps_have_a_way_to_a_raster():

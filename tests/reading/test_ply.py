@@ -5,7 +5,7 @@ import struct
 import numpy as np
 import pytest
 import pyvista as pv
-from refusals import refused_files
+from refusals import refused_files, saved
 
 import vizlight
 from vizlight.files import FileError
@@ -24,8 +24,7 @@ def text(*rows, head=(), form="ascii"):
 
 def read(folder, data):
     path = folder / "a.ply"
-    path.write_bytes(data)
-    return vizlight.read(path)
+    return vizlight.read(saved(path, data))
 
 
 @pytest.mark.parametrize("order", ["<", ">"])

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
+from refusals import refused, saved
 
 import vizlight
-from vizlight import files
-from vizlight.files import FileError
 from vizlight.mesh import meaning
 
 HEAD = "VERSION 0.7\nFIELDS {}\nSIZE {}\nTYPE {}\nWIDTH {}\nHEIGHT {}\nPOINTS 3\nDATA {}\n"
@@ -22,13 +21,9 @@ def test_points_in_text_have_values_and_those_without_a_place_are_left_out(tmp_p
     mesh = vizlight.read(written(tmp_path, "x y z intensity", body))
     assert mesh.points.tolist() == [[1, 2, 3], [4, 5, 6]]
     assert mesh["intensity"].tolist() == [10, 30]
-    with pytest.raises(FileError, match="2 of 3 points are there"):
-        vizlight.read(written(tmp_path, "x y z intensity", body[:-9]))
-    with pytest.raises(FileError, match="expected x, y and z among them"):
-        vizlight.read(written(tmp_path, "x y w intensity", body))
-    (tmp_path / "scan.pcd").write_text("1 2 3\n")
-    with pytest.raises(FileError, match="no line DATA"):
-        vizlight.read(tmp_path / "scan.pcd")
+    refused(written(tmp_path, "x y z intensity", body[:-9]), "2 of 3 points are there")
+    refused(written(tmp_path, "x y w intensity", body), "expected x, y and z among them")
+    refused(saved(tmp_path / "scan.pcd", "1 2 3\n"), "no line DATA")
 
 
 def test_points_of_a_camera_are_upright_and_colours_are_in_four_bytes(tmp_path):
@@ -72,15 +67,12 @@ def test_packed_fields_follow_one_another(tmp_path):
     ],
 )
 def test_scans_that_are_no_points(tmp_path, text, reason):
-    (tmp_path / "a.pts").write_text(text)
-    with pytest.raises(files.FileError, match=reason):
-        vizlight.read(tmp_path / "a.pts")
+    refused(saved(tmp_path / "a.pts", text), reason)
 
 
 @pytest.mark.parametrize("count", ["2\n", ""])
 def test_points_of_a_scan(tmp_path, count):
-    (tmp_path / "a.pts").write_text(f"{count}0 0 0 5 255 0 0\n1 2 3 6 0 255 7\n")
-    scan = vizlight.read(tmp_path / "a.pts")
+    scan = vizlight.read(saved(tmp_path / "a.pts", f"{count}0 0 0 5 255 0 0\n1 2 3 6 0 255 7\n"))
     np.testing.assert_array_equal(scan.points, [[0, 0, 0], [1, 2, 3]])
     np.testing.assert_array_equal(scan["intensity"], [5, 6])
     np.testing.assert_array_equal(scan["color"], [[255, 0, 0], [0, 255, 7]])
@@ -112,19 +104,16 @@ def test_points_of_a_lidar(tmp_path, name):
 
 
 def test_points_in_lines_of_text(tmp_path):
-    (tmp_path / "a.xyz").write_text("0 0 0 10 20 30\n1 2 3 40 50 60\n")
-    mesh = vizlight.read(tmp_path / "a.xyz")
+    mesh = vizlight.read(saved(tmp_path / "a.xyz", "0 0 0 10 20 30\n1 2 3 40 50 60\n"))
     assert mesh["color"].tolist() == [[10, 20, 30], [40, 50, 60]]
 
 
 @pytest.mark.filterwarnings("default:.*the last three columns")
 def test_normals_and_colors_of_points_in_lines_of_text(tmp_path):
     path = tmp_path / "a.xyz"
-    path.write_text("0 0 0 0 0.6 -0.8\n1 2 3 1 0 0\n")
-    mesh = vizlight.read(path)
+    mesh = vizlight.read(saved(path, "0 0 0 0 0.6 -0.8\n1 2 3 1 0 0\n"))
     np.testing.assert_allclose(mesh.active_normals, [[0, 0.6, -0.8], [1, 0, 0]], atol=1e-6)
     path.write_text("0 0 0 0 0.5 1\n1 2 3 1 1 1\n")
     assert vizlight.read(path)["color"].tolist() == [[0, 128, 255], [255, 255, 255]]
-    path.write_text("0 0 0 0 0.5 -9\n1 2 3 1 1 1\n")
     with pytest.warns(UserWarning, match="neither colours .* nor normals of length 1"):
-        assert not vizlight.read(path).array_names
+        assert not vizlight.read(saved(path, "0 0 0 0 0.5 -9\n1 2 3 1 1 1\n")).array_names

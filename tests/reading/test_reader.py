@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import read_warned, saved
 from scipy.spatial import cKDTree
 from vtkmodules.vtkCommonCore import vtkOutputWindow
 
@@ -31,8 +32,7 @@ def volume():
 def test_names_of_arrays_are_one_line(tmp_path):
     # VTK takes a whole line of a cube, with its end.
     head = "Made up\n Density of helium \n1 0 0 0\n2 1 0 0\n2 0 1 0\n2 0 0 1\n2 2 0 0 0\n"
-    path = tmp_path / "a.cube"
-    path.write_text(head + "1 2\n3 4\n5 6\n7 8\n")
+    path = saved(tmp_path / "a.cube", head + "1 2\n3 4\n5 6\n7 8\n")
     mesh = files.read(path)
     assert list(mesh.point_data) == [mesh.active_scalars_name] == ["Density of helium"]
     assert sorted(mesh["Density of helium"]) == [1, 2, 3, 4, 5, 6, 7, 8]
@@ -61,8 +61,7 @@ def test_names_of_arrays_are_one_line(tmp_path):
     ],
 )
 def test_damaged_files_give_one_clear_error(name, content, words, tmp_path, capfd):
-    path = tmp_path / name
-    path.write_bytes(content)
+    path = saved(tmp_path / name, content)
     expected = rf"file: expected a (mesh that|file that) .*, got .*{name}. \(.*{words}"
     with pytest.raises(files.FileError, match=expected):
         files.read(path)
@@ -70,13 +69,11 @@ def test_damaged_files_give_one_clear_error(name, content, words, tmp_path, capf
 
 
 @pytest.mark.skipif(not _trials._FORKS, reason="a helper does not share what is replaced")
-def test_a_file_that_ends_the_process_is_refused(tmp_path, monkeypatch):
+def test_a_file_that_ends_the_process_is_refused(tmp_path, monkeypatch, calls_of):
     """Also one that is packed, of which another one is read; formats of own checks are not."""
-    forked = _trials._forked
     monkeypatch.setattr(_trials.threading, "active_count", lambda: 1)
-    monkeypatch.setattr(_trials, "_forked", lambda request: tried.append(1) or forked(request))
+    tried = calls_of(_trials, "_forked")
     found = reader._found
-    tried = []
 
     def ends(path, *rest):
         if _trials._is_trial:
@@ -283,8 +280,7 @@ def test_what_meshio_says_is_a_warning_or_left_to_the_error(tmp_path, capfd):
     path.write_text(path.read_text().replace("End", 2 * unknown + "End"))
     with pytest.warns(UserWarning, match=r"a\.mesh': Meshio doesn't know .*first of 2 warnings"):
         assert files.read(path).n_cells == 1
-    path = tmp_path / "a.msh"
-    path.write_text("$MeshFormat\n4.1 0 8\nno end\n")
+    path = saved(tmp_path / "a.msh", "$MeshFormat\n4.1 0 8\nno end\n")
     with pytest.raises(files.FileError, match="section not found"):
         files.read(path)
     assert capfd.readouterr() == ("", "")
@@ -317,8 +313,7 @@ def test_files_of_scenes_are_read_without_a_screen(tmp_path, monkeypatch):
 
 
 def test_groups_of_faces_beside_lines_are_left_out(tmp_path):
-    path = tmp_path / "a.obj"
-    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nusemtl a\nf 1 2 3\np 1\n")
+    path = saved(tmp_path / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nusemtl a\nf 1 2 3\np 1\n")
     words = r"arrays without a row for each cell are left out: \['GroupIds'"
     with warnings.catch_warnings():
         # PyVista warns of them too, by its own class.
@@ -462,10 +457,7 @@ def test_points_that_float32_does_not_resolve_are_noted(tmp_path):
     plane.clear_data()
     plane.points = np.asarray(plane.points, np.float32)
     plane.save(tmp_path / "a.vtp")
-    with pytest.warns(
-        UserWarning, match="float32, which are .* apart .*: points may fall together"
-    ):
-        vizlight.read(tmp_path / "a.vtp")
+    read_warned(tmp_path / "a.vtp", "float32, which are .* apart .*: points may fall together")
 
 
 def test_points_of_no_cell_that_are_far_from_all_cells_are_left_out(tmp_path):
@@ -474,8 +466,7 @@ def test_points_of_no_cell_that_are_far_from_all_cells_are_left_out(tmp_path):
     more = pv.UnstructuredGrid(grid.cells, grid.celltypes, np.append(grid.points, [[9, 0, 0]], 0))
     more["T"] = np.arange(28.0)
     more.save(tmp_path / "a.vtu")
-    with pytest.warns(UserWarning, match="1 of its 28 points are in no cell and left out"):
-        mesh = vizlight.read(tmp_path / "a.vtu")
+    mesh = read_warned(tmp_path / "a.vtu", "1 of its 28 points are in no cell and left out")
     assert mesh.bounds == grid.bounds
     np.testing.assert_array_equal(mesh["T"], grid["T"])
     # One among the cells stays.
@@ -488,8 +479,7 @@ def test_cells_of_grdecl_share_their_points(tmp_path):
     pillars = "\n".join(f"{x} {y} 0 {x} {y} 9" for y in (0, 1) for x in (0, 1, 2))
     depths = "8*1\n8*3"
     text = f"SPECGRID\n2 1 1 1 F /\nCOORD\n{pillars} /\nZCORN\n{depths} /\nPERMX\n5 700 /\n"
-    (tmp_path / "a.grdecl").write_text(text)
-    mesh = vizlight.read(tmp_path / "a.grdecl")
+    mesh = vizlight.read(saved(tmp_path / "a.grdecl", text))
     assert (mesh.n_cells, mesh.n_points) == (2, 12)
     # The face between the two cells is not one of the outer surface.
     assert mesh.extract_surface(algorithm="dataset_surface").n_cells == 10

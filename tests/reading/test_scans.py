@@ -5,6 +5,7 @@ import gzip
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import saved
 
 import vizlight
 from vizlight.mesh import meaning
@@ -34,8 +35,7 @@ def nrrd(path, columns, space="left-posterior-superior", *, encoding="raw"):
         "endian: little", f"encoding: {encoding}",
         "space origin: ({},{},{})".format(*ORIGIN),
     ]  # fmt: skip
-    path.write_bytes("\n".join([*fields, "\n"]).encode() + values)
-    return vizlight.read(path)
+    return vizlight.read(saved(path, "\n".join([*fields, "\n"]).encode() + values))
 
 
 def meta(path, columns, *, orientation="RAI"):
@@ -47,8 +47,7 @@ def meta(path, columns, *, orientation="RAI"):
         "ElementType": "MET_SHORT", "ElementDataFile": "LOCAL",
     }  # fmt: skip
     lines = [f"{key} = {' '.join(map(str, np.atleast_1d(it)))}\n" for key, it in fields.items()]
-    path.write_bytes("".join(lines).encode() + VALUES.tobytes(order="F"))
-    return vizlight.read(path)
+    return vizlight.read(saved(path, "".join(lines).encode() + VALUES.tobytes(order="F")))
 
 
 def assert_placed(mesh, affine):
@@ -106,8 +105,7 @@ def test_a_header_without_places_leaves_what_the_reader_takes(tmp_path):
         (b"(0.5,0.0,0.0)", b"(0.5,nan,0.0)"), (b"(0.5,0.0,0.0)", b"(0.0,2.0,0.0)"),
     ):  # fmt: skip
         nrrd(path, WAYS["straight"])
-        path.write_bytes(path.read_bytes().replace(old, new))
-        mesh = vizlight.read(path)
+        mesh = vizlight.read(saved(path, path.read_bytes().replace(old, new)))
         assert isinstance(mesh, pv.ImageData)
         assert meaning.ways(mesh) == ("x", "y", "z")
 
@@ -121,8 +119,7 @@ def test_segments_of_a_file_of_labels_have_their_names_and_colours(tmp_path):
         "Segment1_Color:=0 0 1", "Segment1_LabelValue:=7", "Segment1_Name:=heart",
     ]  # fmt: skip
     path = tmp_path / "a.seg.nrrd"
-    path.write_bytes("\n".join([*fields, "\n"]).encode() + labels.tobytes())
-    mesh = vizlight.read(path)
+    mesh = vizlight.read(saved(path, "\n".join([*fields, "\n"]).encode() + labels.tobytes()))
     assert meaning.flags(mesh, "segment") == {2: "left lung", 7: "heart"}
     assert meaning.flags(mesh, "segment", "colors") == {2: "#ff8000", 7: "#0000ff"}
     look = vizlight.look(path)

@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+from refusals import read_warned, refused, saved
 
 import vizlight
 from vizlight.reading import scene_files
@@ -27,9 +28,7 @@ EMPTY = (
 
 
 def written(folder, *parts):
-    path = folder / "a.wrl"
-    path.write_text("\n".join(["#VRML V2.0 utf8", *parts]) + "\n")
-    return path
+    return saved(folder / "a.wrl", "\n".join(["#VRML V2.0 utf8", *parts]) + "\n")
 
 
 def test_transforms_inside_of_transforms(tmp_path):
@@ -47,13 +46,11 @@ def test_transforms_inside_of_transforms(tmp_path):
 @pytest.mark.filterwarnings("default:.*left out")
 def test_a_shape_without_points_does_not_refuse_the_others(tmp_path):
     path = written(tmp_path, TETRAHEDRON, EMPTY)
-    with pytest.warns(UserWarning, match="1 of 2 shapes are left out: no points"):
-        assert vizlight.read(path).n_cells == 4
+    assert read_warned(path, "1 of 2 shapes are left out: no points").n_cells == 4
 
 
 def test_a_scene_without_points_is_refused(tmp_path):
-    with pytest.raises(vizlight.files.FileError, match="no points"):
-        vizlight.read(written(tmp_path, EMPTY))
+    refused(written(tmp_path, EMPTY), "no points")
 
 
 def test_colors_of_points(tmp_path):
@@ -159,14 +156,12 @@ def test_nodes_that_vtk_reads_wrong(text, ends, tmp_path):
     }.items(),
 )
 def test_scenes_that_end_the_process_in_vtk_are_refused(text, words, tmp_path):
-    with pytest.raises(vizlight.files.FileError, match=words):
-        vizlight.read(written(tmp_path, text))
+    refused(written(tmp_path, text), words)
 
 
 def test_nodes_of_other_files_are_left_out_with_a_word(tmp_path):
     path = written(tmp_path, f'Inline {{ url "b.wrl" }} {TETRAHEDRON}')
-    with pytest.warns(UserWarning, match="nodes of other files are left out: Inline"):
-        assert vizlight.read(path).n_cells == 4
+    assert read_warned(path, "nodes of other files are left out: Inline").n_cells == 4
 
 
 def test_external_prototypes_are_left_out_with_a_word(tmp_path):
@@ -189,12 +184,10 @@ def test_texts_with_quotation_marks_and_scales_of_textures(tmp_path):
 
 def test_what_vtk_stops_at_is_refused(tmp_path):
     path = written(tmp_path, TETRAHEDRON, "Viewpoint { position 1 }", TETRAHEDRON)
-    with pytest.raises(vizlight.files.FileError, match="VTK reads 1 of its 2 shapes"):
-        vizlight.read(path)
+    refused(path, "VTK reads 1 of its 2 shapes")
 
 
 def test_the_first_version_is_refused(tmp_path):
     path = tmp_path / "a.wrl"
-    path.write_text("#VRML V1.0 ascii\nSeparator { }\n")
     with pytest.raises(vizlight.files.FileError, match="VRML 1, which VTK does not read: save it"):
-        vizlight.read(path)
+        vizlight.read(saved(path, "#VRML V1.0 ascii\nSeparator { }\n"))

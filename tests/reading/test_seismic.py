@@ -3,7 +3,7 @@
 import struct
 
 import numpy as np
-import pytest
+from refusals import read_warned, saved
 
 import vizlight
 
@@ -19,9 +19,7 @@ def written(folder, places):
         struct.pack_into(">HH", trace, 114, 4, 4000)
         struct.pack_into(">ii", trace, 180, x, y)
         head += trace + struct.pack(">4f", *np.arange(4.0) + number)
-    path = folder / "survey.segy"
-    path.write_bytes(head)
-    return path
+    return saved(folder / "survey.segy", head)
 
 
 def test_lines_of_traces_are_a_volume_by_their_depth_points(tmp_path):
@@ -33,6 +31,5 @@ def test_lines_of_traces_are_a_volume_by_their_depth_points(tmp_path):
 
 
 def test_traces_without_places_stand_in_a_row(tmp_path):
-    with pytest.warns(UserWarning, match="stand in a row by number"):
-        mesh = vizlight.read(written(tmp_path, [(0, 0)] * 6))
+    mesh = read_warned(written(tmp_path, [(0, 0)] * 6), "stand in a row by number")
     assert np.unique(mesh.points[:, 0]).tolist() == [*range(6)]

@@ -4,6 +4,7 @@ import foam
 import numpy as np
 import pytest
 import pyvista as pv
+from refusals import read_warned
 from vtkmodules.vtkIOParallel import vtkEnSightWriter
 
 import vizlight
@@ -90,10 +91,9 @@ def test_a_time_that_is_not_there_is_an_error_with_those_that_are(tmp_path):
         vizlight.read(path, time=1.6)
 
 
-def test_a_file_without_steps_is_opened_once(monkeypatch, tmp_path):
+def test_a_file_without_steps_is_opened_once(calls_of, tmp_path):
     pv.Sphere().save(tmp_path / "ball.vtp")
-    opened, get_reader = [], pv.get_reader
-    monkeypatch.setattr(pv, "get_reader", lambda path: opened.append(path) or get_reader(path))
+    opened = calls_of(pv, "get_reader")
     assert vizlight.read(tmp_path / "ball.vtp") == pv.Sphere()
     assert len(opened) == 1
 
@@ -136,7 +136,6 @@ def test_the_folder_of_a_case_is_read_as_its_file(marked, case):
 
 def test_a_directive_that_vtk_does_not_read_is_no_damage(tmp_path):
     case = foam.write(tmp_path / "case", [1], swirl, before='speed #calc "2*3";\n')
-    with pytest.warns(UserWarning, match=r"fields that are left out.*U' \(#calc\).*-expand"):
-        mesh = vizlight.read(case)
+    mesh = read_warned(case, r"fields that are left out.*U' \(#calc\).*-expand")
     assert mesh.n_points == 125
     assert "U" not in mesh.point_data

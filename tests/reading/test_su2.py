@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from refusals import refused_files
+from refusals import refused_files, saved
 
 import vizlight
 
@@ -27,8 +27,7 @@ FLAT += "MARKER_ELEMS= 1\n3 0 1\n"
 
 
 def read(folder, text):
-    (folder / "a.su2").write_text(text)
-    return vizlight.read(folder / "a.su2")
+    return vizlight.read(saved(folder / "a.su2", text))
 
 
 def test_markers_are_no_cells(tmp_path):

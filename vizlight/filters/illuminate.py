@@ -311,17 +311,14 @@ def _split(mesh: pv.DataSet, path: str, options: LightOptions) -> tuple[pv.DataS
         if options.normals is None:
             normals.warn_of_idle(mesh, angle)
         return mesh, None
-    where = f"block {path}: " if path else ""
-    if not isinstance(mesh, pv.PolyData):
-        expected, got = "a pyvista.PolyData, whose points can be split", type(mesh).__name__
-        remedy = "take the mesh's extract_surface()"
-        raise ValueError(where + _check.message("feature_angle", expected, got, remedy))
-    given: object = options.tangents
-    # An array without a name has no rows for the points that are split off.
-    if given is not None and not isinstance(given, str):
+    with _check.in_block(path):
+        if not isinstance(mesh, pv.PolyData):
+            expected, got = "a pyvista.PolyData, whose points can be split", type(mesh).__name__
+            remedy = "take the mesh's extract_surface()"
+            raise _check.value_error("feature_angle", expected, got, remedy)
+        # An array without a name has no rows for the points that are split off.
         expected, remedy = "the name of a point array beside feature_angle=", "attach the array"
-        got = _check.describe(given)
-        raise TypeError(where + _check.message("tangents", expected, got, remedy))
+        _check.instance("tangents", options.tangents, str | None, expected, remedy=remedy)
     if options.facing == "as given":
         return normals.split_edges(mesh, angle), None
     return normals.split_or_normals(mesh, angle)

@@ -12,8 +12,10 @@ from vtkmodules.vtkCommonCore import vtkStringArray
 
 from vizlight import _check
 from vizlight._questions import QUESTIONS, Question
-from vizlight._types import Array, Exponent
+from vizlight._types import Array, Exponent, Indices
 from vizlight.filters.tint import RGB, ColorMap, color_table
+from vizlight.geometry.nspace import lattice
+from vizlight.mesh.blocks import polydata
 from vizlight.scene import Scene, View
 from vizlight.scene.presets import AnyScene, preset_of, required_scene
 from vizlight.shading import engine
@@ -118,7 +120,7 @@ def key(
         steps = [i / len(names) for i in range(1, len(names))]
     facts = _question(topic)
     x, y, faces = _bar(steps) if facts.is_bar else _disc(HOLE * (facts.key == "disc"))
-    mesh = pv.PolyData(np.stack([x, y, 0 * x], axis=1), faces.ravel())
+    mesh = polydata(np.stack([x, y, 0 * x], axis=1), faces)
     mesh[RGB] = colors_of(
         scene, x, y, question=topic, exponent=exponent, conditioned=conditioned, cmap=cmap
     )
@@ -375,26 +377,18 @@ def _in_frame_of_eye(scene: Scene) -> Scene:
     return scene.replace(lights=lights, view=View(direction=(0, 0, 1)), depth_cue=None)
 
 
-def _disc(hole: float) -> tuple[Array, Array, NDArray[np.int64]]:
+def _disc(hole: float) -> tuple[Array, Array, Indices]:
     """Return places of a disc and its quadrilaterals, from a hole's radius to 1."""
     # Rings of a ball stand close where its normal turns fast.
     radii = np.sin(np.linspace(np.arcsin(hole), np.pi / 2, RINGS))
     angles = 2 * np.pi * np.arange(AROUND) / AROUND
     x, y = np.outer(radii, np.cos(angles)), np.outer(radii, np.sin(angles))
-    at = np.arange(x.size).reshape(x.shape)
-    # The first column stands behind the last one, too, and closes the rings.
-    return x.ravel(), y.ravel(), _quads(np.hstack([at, at[:, :1]]))
+    return x.ravel(), y.ravel(), lattice.cells(x.shape, (False, True), by_rows=True)
 
 
-def _bar(steps: Sequence[float]) -> tuple[Array, Array, NDArray[np.int64]]:
+def _bar(steps: Sequence[float]) -> tuple[Array, Array, Indices]:
     """Return places of a bar and its quadrilaterals, with columns at both sides of each step."""
     beside = [2 * step - 1 + side * EDGE for step in steps for side in (-1, 1)]
     columns = np.unique(np.clip([*np.linspace(-1, 1, ALONG), *beside], -1, 1))
     x, y = np.meshgrid(columns, np.linspace(-BAR, BAR, 9))
-    return x.ravel(), y.ravel(), _quads(np.arange(x.size).reshape(x.shape))
-
-
-def _quads(at: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the faces of a grid of indices, each with its number of corners."""
-    corners = [at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]]
-    return np.stack([np.full_like(corners[0], 4), *corners], axis=-1).reshape(-1, 5)
+    return x.ravel(), y.ravel(), lattice.cells(x.shape, (False, False), by_rows=True)

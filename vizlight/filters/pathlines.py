@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from vizlight import _check, _progress
 from vizlight._types import Array, Exponent, Facing, Foreign, Model, Precision
 from vizlight.filters.illuminate import light_mesh
-from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS
+from vizlight.filters.streamlines import OWN_TANGENTS, TANGENTS, seeds_of
 from vizlight.mesh import georeference, meaning, records
 from vizlight.mesh.particles import Carrier, Rows
 from vizlight.reading import cf_grids
@@ -194,17 +194,9 @@ def pathlines(
 
 def _seeds(mesh: pv.DataSet, vectors: Array, options: PathlineOptions) -> Array:
     """Return the points at which particles start."""
-    seeds = options.seeds
-    if isinstance(seeds, pv.DataSet):
-        return np.asarray(seeds.points, dtype=np.float64)
-    array = _check.floats("seeds", seeds).astype(np.float64)
-    if array.ndim:
-        places: Array = _check.vectors("seeds", array, n=3)
-        if places.ndim != 2 or not np.all(np.isfinite(places)):
-            expected = "finite points of shape (M, 3)"
-            raise _check.value_error("seeds", expected, _check.describe(seeds))
+    count, places = seeds_of(options.seeds)
+    if places is not None:
         return places
-    count = _check.integer("seeds", seeds, low=1)
     moving = np.flatnonzero(np.any(vectors != 0, axis=1))
     if not len(moving):
         name = repr(options.tangents)

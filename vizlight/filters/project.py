@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal, get_args
@@ -241,24 +242,15 @@ def _own(options: ProjectOptions) -> Record:
 
 
 def _each(
-    mesh: pv.DataSet | pv.MultiBlock, work: Callable[[pv.DataSet], pv.DataSet], path: str = ""
+    mesh: pv.DataSet | pv.MultiBlock, work: Callable[[pv.DataSet], pv.DataSet]
 ) -> pv.DataSet | pv.MultiBlock:
     """Apply a function to a mesh, or to each block; an error names the block."""
-    if not isinstance(mesh, pv.MultiBlock):
-        try:
-            return work(mesh)
-        except (TypeError, ValueError) as error:
-            if not path:
-                raise
-            raise type(error)(f"block {path}: {error}") from error
-    out = pv.MultiBlock()
-    for i in range(mesh.n_blocks):
-        name = mesh.get_block_name(i)
-        block = mesh[i]
-        out.append(None if block is None else _each(block, work, f"{path}/{name or i}"), name)
-    for key, value in mesh.field_data.items():
-        out.field_data[key] = value
-    return out
+
+    def of_block(block: pv.DataSet, path: str) -> pv.DataSet:
+        with _check.in_block(path):
+            return work(block)
+
+    return blocks.like(mesh, itertools.starmap(of_block, blocks.named_blocks(mesh)))
 
 
 def _check_space(

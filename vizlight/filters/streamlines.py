@@ -495,7 +495,9 @@ def _lines(
         length = _check.number("max_length", length, low=np.finfo(float).tiny) / size
     # No step is longer than ``step`` cell lengths: their number bounds a line to REACH of these.
     how = Tracing(options.step, length, math.ceil(REACH / options.step), options.seed)
-    count, places = _seeds(options.seeds, origin, scale)
+    count, places = seeds_of(options.seeds)
+    # Seeds are moved and scaled as the mesh was.
+    places = None if places is None else (places - origin) * scale
     # Free lines in space are left to VTK; all others go from cell to cell here.
     if not (options.confined or options.line_field or options.spacing is not None):
         return _in_space(mesh, how, count, places, report)
@@ -702,8 +704,8 @@ def _bare(mesh: pv.DataSet, lit_names: set[str]) -> pv.DataSet:
     return bare
 
 
-def _seeds(seeds: object, origin: Array, scale: Array) -> tuple[int, Array | None]:
-    """Return the number of lines, or where they start in a mesh that was moved and scaled."""
+def seeds_of(seeds: object) -> tuple[int, Array | None]:
+    """Return the number of lines, and where they start if that is given."""
     if isinstance(seeds, pv.DataSet):
         positions: Array = np.asarray(seeds.points, dtype=np.float64)
     else:
@@ -712,8 +714,7 @@ def _seeds(seeds: object, origin: Array, scale: Array) -> tuple[int, Array | Non
         count = _check.integer("seeds", seeds, low=1)
         _check.holds("seeds", (count, 3))
         return count, None
-    # Seeds are moved and scaled as the mesh was.
-    places = (_check.vectors("seeds", positions, n=3) - origin) * scale
+    places: Array = _check.vectors("seeds", positions, n=3)
     if places.ndim != 2 or not len(places) or not np.all(np.isfinite(places)):
         what = "finite points of shape (M, 3), one or more"
         raise _check.value_error("seeds", what, _check.describe(seeds))

@@ -46,6 +46,12 @@ def outer_surface(mesh: pv.DataSet) -> tuple[pv.PolyData, Indices]:
     return pv.PolyData(surface), ids
 
 
+def plain_surface(mesh: pv.DataSet) -> pv.PolyData:
+    """Return the outer faces by VTK, with the arrays of the mesh and no more."""
+    options = {"pass_pointid": False, "pass_cellid": False}
+    return mesh.extract_surface(algorithm="dataset_surface", **options)
+
+
 def surface(mesh: object, name: str) -> pv.PolyData:
     """Return a mesh with faces: the mesh itself, or the outer surface of another or of its blocks.
 
@@ -90,21 +96,15 @@ def one_grid(mesh: pv.MultiBlock) -> pv.UnstructuredGrid:
 def highest(mesh: pv.MultiBlock) -> joining.Joined:
     """Return what :func:`one_grid` does, and what became of the arrays of the blocks."""
     found = joining.joined(joining.highest(named_blocks(mesh)))
-    _keep_fields(mesh, found.grid)
+    found.grid.field_data.update(mesh.field_data)
     return found
 
 
 def joined(mesh: pv.MultiBlock) -> pv.UnstructuredGrid:
     """Return all datasets as one grid."""
     grid = joining.joined(named_blocks(mesh)).grid
-    _keep_fields(mesh, grid)
+    grid.field_data.update(mesh.field_data)
     return grid
-
-
-def _keep_fields(mesh: pv.MultiBlock, grid: pv.UnstructuredGrid) -> None:
-    """Attach the field data of the whole, such as the time of a step."""
-    for key in mesh.field_data:
-        grid.field_data[key] = np.array(mesh.field_data[key])
 
 
 def by_dimension(mesh: pv.MultiBlock) -> list[pv.MultiBlock]:
@@ -127,8 +127,7 @@ def by_dimension(mesh: pv.MultiBlock) -> list[pv.MultiBlock]:
         for key in [key for key in parts if -key[0] == highest - 1]:
             parts[key] = _without_bounds(parts[key], whole)
     for part in parts.values():
-        for name in mesh.field_data:  # such as the time of a step
-            part.field_data[name] = mesh.field_data[name]
+        part.field_data.update(mesh.field_data)  # such as the time of a step
     return [parts[key] for key in sorted(parts) if parts[key].n_blocks]
 
 
@@ -172,8 +171,8 @@ def named_blocks(mesh: object, path: str = "") -> Iterator[tuple[pv.DataSet, str
         yield mesh, path
         return
     if not isinstance(mesh, pv.MultiBlock):
-        where = f"block {path}: " if path else ""
-        raise TypeError(where + _check.message("mesh", "a PyVista mesh", type(mesh).__name__))
+        with _check.in_block(path):
+            raise TypeError(_check.message("mesh", "a PyVista mesh", type(mesh).__name__))
     for i in range(mesh.n_blocks):
         if (block := _block(mesh, i)) is not None:
             # By the key: VTK's method of the information tries the types of all keys.
@@ -204,8 +203,7 @@ def like(mesh: MeshT, made: Iterator[pv.DataSet]) -> MeshT:
             out.SetBlock(i, like(block, made))
         elif block is not None:
             out.SetBlock(i, next(made))
-    for key, value in mesh.field_data.items():
-        out.field_data[key] = np.array(value)
+    out.field_data.update(mesh.field_data)
     return out
 
 

@@ -12,7 +12,7 @@ import pyvista as pv
 from matplotlib.path import Path
 
 from vizlight import _check
-from vizlight._types import Array, Bools, Foreign, Raw
+from vizlight._types import Array, Bools, Foreign
 from vizlight.mesh import blocks, georeference, globes, meaning, projections
 from vizlight.mesh.georeference import PROJECTION
 from vizlight.mesh.projections import Projection
@@ -132,10 +132,7 @@ def is_torn(mesh: pv.DataSet) -> bool:
 
 def _moved(mesh: pv.DataSet, plane: Projection, *, is_plane: bool) -> pv.DataSet:
     """Return a mesh with its points in the plane, and its vectors turned."""
-    named = mesh.copy(deep=False)
-    for names in meaning.components(mesh):
-        if ",".join(names) not in mesh.array_names and names[0] in mesh.point_data:
-            named.point_data[",".join(names)] = meaning.vectors(mesh, names)
+    named = meaning.with_components(mesh)
     places = np.asarray(named.points, dtype=np.float64)
     middles = np.asarray(named.cell_centers().points) if _has_vectors(named.cell_data) else None
     flat: pv.DataSet
@@ -158,16 +155,12 @@ def _moved(mesh: pv.DataSet, plane: Projection, *, is_plane: bool) -> pv.DataSet
 
 
 def _has_vectors(data: pv.DataSetAttributes) -> bool:
-    return any(_are_vectors(data[name]) for name in data)
-
-
-def _are_vectors(rows: Raw) -> bool:
-    return np.shape(rows)[1:] == (3,) and np.asarray(rows).dtype.kind == "f"
+    return any(meaning.are_vectors(data[name]) for name in data)
 
 
 def _turn(data: pv.DataSetAttributes, places: Array, plane: Projection) -> None:
     """Turn vectors at places in degrees to where they point in a plane; their lengths stay."""
-    names = [name for name in data if _are_vectors(data[name])]
+    names = [name for name in data if meaning.are_vectors(data[name])]
     if not names:
         return
     lon, lat = places[:, 0], np.clip(places[:, 1], -90 + 2 * STEP, 90 - 2 * STEP)

@@ -134,13 +134,9 @@ def _are_thin(boundary: pv.PolyData, labels: Raw, spacing: Array) -> Bools:
 
 def _kept_points(mesh: pv.PolyData, kept: Foreign) -> pv.PolyData:
     """Return the cells of a mesh with all their points kept, and their arrays."""
-    cells = mesh.extract_points(
-        kept, adjacent_cells=False, pass_point_ids=False, pass_cell_ids=False
+    return blocks.plain_surface(
+        mesh.extract_points(kept, adjacent_cells=False, pass_point_ids=False, pass_cell_ids=False)
     )
-    surface: pv.PolyData = cells.extract_surface(
-        algorithm="dataset_surface", pass_pointid=False, pass_cellid=False
-    )
-    return surface
 
 
 def with_vectors(mesh: pv.DataSet, names: str | Sequence[str], /) -> pv.DataSet:
@@ -297,8 +293,7 @@ def layer_of(mesh: pv.DataSet, at: int, /) -> pv.RectilinearGrid | pv.Structured
     for data, into, number, count in places:
         for name in data:
             into[name] = np.array(data[name][number * count : (number + 1) * count])
-    for name in mesh.field_data:
-        layer.field_data[name] = mesh.field_data[name]
+    layer.field_data.update(mesh.field_data)
     said = meaning.of(mesh)
     if len(said.scales) > 2 and (text := said.scales[2].at(_middle(layer))):
         meaning.attach(layer, dataclasses.replace(said, level=text))
@@ -317,9 +312,7 @@ def _faces_at(mesh: pv.UnstructuredGrid, levels: Array, at: int) -> pv.PolyData:
     lowest = np.minimum.reduceat(heights[ids], ends[:-1])
     chosen: Foreign = np.flatnonzero(lowest == levels[min(at, len(levels) - 2)])
     cells = mesh.extract_cells(chosen, pass_point_ids=False, pass_cell_ids=False)
-    surface: pv.PolyData = cells.extract_surface(
-        algorithm="dataset_surface", pass_pointid=False, pass_cellid=False
-    )
+    surface = blocks.plain_surface(cells)
     there: Foreign = np.asarray(surface.points, dtype=np.float64)[:, 2] == levels[at]
     return _kept_points(surface, there)
 

@@ -195,7 +195,7 @@ def seem_degrees(grid: pv.DataSet, heights: str) -> bool:
     degrees = places and max(abs(bounds.y_min), abs(bounds.y_max)) <= 90
     # Pixels of an image that has no place are one apart.
     fine = max(getattr(grid, "spacing", (0.0, 0.0))[:2]) < 1
-    return degrees and fine and _spread(grid, heights) > max(grid.bounds_size[:2])
+    return degrees and fine and range_of(grid.point_data[heights]) > max(grid.bounds_size[:2])
 
 
 def is_earth(mesh: pv.DataSet) -> bool:
@@ -275,10 +275,11 @@ def exaggeration(mesh: pv.DataSet, heights: str, *, side: float | None = None) -
         Length beside which the heights are seen. Default: the side of the map.
     """
     if side is not None:
-        return _factor(_spread(mesh, heights), side)
+        return _factor(range_of(mesh.point_data[heights]), side)
     sides = sorted(in_metres(mesh).bounds_size)
     # The two longer sides are those of the map. One row of points has no area.
-    return _factor(_spread(mesh, heights), math.sqrt(sides[1] * sides[2]) or sides[2])
+    side = math.sqrt(sides[1] * sides[2]) or sides[2]
+    return _factor(range_of(mesh.point_data[heights]), side)
 
 
 def stretch(mesh: pv.DataSet) -> float:
@@ -308,10 +309,6 @@ def _factor(spread: float, side: float) -> float:
     steps = [float(f"{step * power:.3g}") for step in (1, 2, 5, 10)]
     # Nearest by ratio: 1 and 10 are equally far from 3.16.
     return min(steps, key=lambda step: abs(math.log(step / wanted)))
-
-
-def _spread(mesh: pv.DataSet, heights: str) -> float:
-    return range_of(mesh.point_data[heights])
 
 
 def range_of(heights: Raw) -> float:

@@ -72,20 +72,17 @@ def globe(
         expected, got = "a flat map", f"one of {mesh.bounds_size[2]:g} along z"
         raise _check.value_error("mesh", expected, got)
     lines = mesh if isinstance(mesh, pv.PolyData) and mesh.n_lines else None
-    flat = _surface(closed(mesh)) if lines is None else divided(lines)
-    for names in meaning.components(flat):
-        name = ",".join(names)
-        if name not in flat.array_names and names[0] in flat.point_data:
-            flat.point_data[name] = meaning.vectors(flat, names)
+    flat = blocks.plain_surface(closed(mesh)) if lines is None else divided(lines)
+    flat = meaning.with_components(flat)
     axes = directions(np.asarray(flat.points, dtype=np.float64))
     turned = flat.copy(deep=False)
     turned.points = axes[:, 2].copy()
     for name, rows in flat.point_data.items():
-        if np.shape(rows)[1:] == (3,) and np.asarray(rows).dtype.kind == "f":
+        if meaning.are_vectors(rows):
             turned.point_data[name] = _turned(np.asarray(rows), axes)
     middles = directions(np.asarray(flat.cell_centers().points, dtype=np.float64))
     for name, rows in flat.cell_data.items():
-        if np.shape(rows)[1:] == (3,) and np.asarray(rows).dtype.kind == "f":
+        if meaning.are_vectors(rows):
             turned.cell_data[name] = _turned(np.asarray(rows), middles)
     ball = _whole(turned) if lines is None else turned
     if heights is not None:
@@ -192,8 +189,7 @@ def _of_columns(
         for name, values in data.items():
             table = np.asarray(values).reshape(count, -1, *np.shape(values)[1:])[:, order]
             own[name] = table.reshape(-1, *table.shape[2:])
-    for name in mesh.field_data:
-        grid.field_data[name] = mesh.field_data[name]
+    grid.field_data.update(mesh.field_data)
     return grid
 
 
@@ -260,12 +256,6 @@ def centred(mesh: pv.DataSet, middle: float) -> pv.DataSet:
     return _of_columns(mesh, points, taken, order)
 
 
-def _surface(mesh: pv.DataSet) -> pv.PolyData:
-    """Return the faces of a flat mesh, with its arrays and no more."""
-    options = {"pass_pointid": False, "pass_cellid": False}
-    return mesh.extract_surface(algorithm="dataset_surface", **options)
-
-
 def _whole(ball: pv.PolyData) -> pv.PolyData:
     """Return the surface of a map on a ball with one point at each place, closed at its poles."""
     surface: pv.PolyData = ball.triangulate().clean(
@@ -302,6 +292,5 @@ def _capped(surface: pv.PolyData, sides: Indices, side: float) -> pv.PolyData:
     for name, values in surface.cell_data.items():
         rows = np.asarray(values)
         whole.cell_data[name] = np.concatenate([rows, np.repeat(rows[-1:], len(fan), axis=0)])
-    for name in surface.field_data:
-        whole.field_data[name] = surface.field_data[name]
+    whole.field_data.update(surface.field_data)
     return whole

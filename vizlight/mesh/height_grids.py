@@ -14,6 +14,7 @@ from vizlight._types import Array, Bools, Indices
 from vizlight.geometry.relief import height_field
 from vizlight.geometry.relief.depth_map import depth_map
 from vizlight.mesh import blocks, georeference, records, subdivision
+from vizlight.mesh.sky_rays import across
 from vizlight.vtk.arrays import GridPoints, points_of
 from vizlight.vtk.cells import dimensions, has_faces
 
@@ -307,7 +308,7 @@ def steep(mesh: pv.DataSet, heights: str, share: float) -> float:
         return 0.0
     points: Array = np.array(points_of(flat, None)[:], dtype=np.float64)
     points[:, 2] = flat.point_data[heights]
-    normals = _normals(points, triangles)
+    normals = across(points, triangles)
     with np.errstate(divide="ignore", invalid="ignore"):
         slopes = np.hypot(normals[:, 0], normals[:, 1]) / np.abs(normals[:, 2])
     slopes = slopes[np.isfinite(slopes)]
@@ -331,13 +332,7 @@ def _some_triangles(mesh: pv.DataSet, most: int) -> Indices:
 
 def _areas(surface: pv.PolyData, triangles: Indices) -> Array:
     """Return vectors along the normals of triangles, twice as long as their areas."""
-    return _normals(np.asarray(surface.points, dtype=np.float64), triangles)
-
-
-def _normals(points: Array, triangles: Indices) -> Array:
-    """Return vectors along the normals of triangles of points, twice as long as their areas."""
-    first, second, third = points[triangles.T]
-    return np.asarray(np.cross(second - first, third - first))
+    return across(np.asarray(surface.points, dtype=np.float64), triangles)
 
 
 def _look_alike(areas: Array) -> bool:

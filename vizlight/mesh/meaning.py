@@ -484,6 +484,20 @@ def _planar(mesh: pv.DataSet) -> list[str]:
     ]
 
 
+def are_vectors(rows: Raw) -> bool:
+    """Return whether rows are real vectors of three components."""
+    return np.shape(rows)[1:] == (3,) and np.asarray(rows).dtype.kind == "f"
+
+
+def with_components(mesh: DataSetT) -> DataSetT:
+    """Return a mesh with vectors of the points, also those of its components."""
+    named = mesh.copy(deep=False)
+    for group in components(mesh):
+        if ",".join(group) not in mesh.array_names and group[0] in mesh.point_data:
+            named.point_data[",".join(group)] = vectors(mesh, group)
+    return named
+
+
 def is_planar(rows: Raw) -> bool:
     """Return whether rows are vectors of two components.
 

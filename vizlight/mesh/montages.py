@@ -9,7 +9,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._types import Array
-from vizlight.mesh import meaning
+from vizlight.mesh import meaning, records
 from vizlight.vtk.cells import dimensions
 
 #: Most slices of a stack, fewest pixels along its slices as a multiple of their number, and least
@@ -59,11 +59,7 @@ def side_by_side(volume: pv.DataSet, name: str, /) -> pv.ImageData:
     """
     _check.instance("volume", volume, pv.ImageData | pv.StructuredGrid, "an image or a grid")
     _check.text("name", name, expected="the name of a point array")
-    if name not in volume.point_data or volume.point_data[name].ndim != 1:
-        expected = (
-            f"the name of a point array of one component, {_check.one_of(volume.point_data.keys())}"
-        )
-        raise _check.value_error("name", expected, repr(name))
+    values = records.scalars_of(volume, "name", name).astype(np.float32)
     steps, across = _steps(volume), int(np.argmin(dimensions(volume)))
     first, second = (axis for axis in range(3) if axis != across)
     # The axis that rises most is up, and points away from the eye where none does.
@@ -71,7 +67,6 @@ def side_by_side(volume: pv.DataSet, name: str, /) -> pv.ImageData:
         tuple(abs(steps[axis]) / np.linalg.norm(steps[axis]))[::-1] for axis in (first, second)
     ]
     right, up = (first, second) if rises[0] <= rises[1] else (second, first)
-    values = np.asarray(volume.point_data[name], dtype=np.float32)
     values = values.reshape(dimensions(volume), order="F").transpose(across, up, right)
     for axis, along in ((1, up), (2, right), (0, across)):
         if steps[along][np.argmax(np.abs(steps[along]))] < 0:

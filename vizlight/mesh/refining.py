@@ -97,13 +97,8 @@ def refined(
     ValueError
         If the mesh has cells that fill space, or neither faces nor lines.
     """
-    # Of several blocks the message must say which one it is about.
-    try:
+    with _check.in_block(path):
         flat = subdivision.as_polydata(mesh)
-    except ValueError as cause:
-        if not path:
-            raise
-        raise ValueError(f"block {path}: {cause}") from cause
     origin: Indices | None = None
     if has_faces(flat):
         parents, origin = subdivision.triangles(flat)

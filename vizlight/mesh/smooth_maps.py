@@ -7,7 +7,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._types import Array
-from vizlight.mesh import blocks
+from vizlight.mesh import blocks, records
 
 #: Types of grids that may have one layer.
 Grid = pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid
@@ -64,10 +64,7 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
     if len(sizes) != 2:
         raise _check.value_error("mesh", "a grid of one layer", mesh.dimensions)
     _check.text("name", name, expected="the name of an array")
-    if name not in mesh.point_data or np.ndim(mesh.point_data[name]) != 1:
-        expected = "the name of an array of one component at points"
-        raise _check.value_error("name", expected, repr(name))
-    values = np.asarray(mesh.point_data[name], dtype=np.float64)
+    values: Array = records.scalars_of(mesh, "name", name).astype(np.float64)
     is_known = np.isfinite(values)
     places = np.asarray(mesh.points, dtype=np.float64)
     if not np.isfinite(places).all() or not is_known.any():
@@ -96,8 +93,7 @@ def smoothed(mesh: Grid, name: str, factor: int, /) -> pv.PolyData:
         missing.point_data[name] = np.full(missing.n_points, np.nan)
         smooth = smooth.append_polydata(missing)
         del smooth.point_data[SHARE]
-    for key in mesh.field_data:
-        smooth.field_data[key] = mesh.field_data[key]
+    smooth.field_data.update(mesh.field_data)
     return smooth
 
 

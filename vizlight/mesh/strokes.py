@@ -479,6 +479,5 @@ def _polylines(
     # PyVista refuses arrays without rows.
     for name in mesh.point_data if rebuilt.n_points else ():
         rebuilt.point_data[name] = at_points(np.asarray(mesh.point_data[name]))
-    for name in mesh.field_data:
-        rebuilt.field_data[name] = mesh.field_data[name]
+    rebuilt.field_data.update(mesh.field_data)
     return rebuilt

@@ -10,6 +10,7 @@ import pyvista as pv
 
 from vizlight._types import AnyArray, Array, Bools, Indices, Raw
 from vizlight.geometry.lines.simplices import Columns
+from vizlight.geometry.nspace import lattice
 from vizlight.mesh import blocks, globes, meaning
 
 #: Distance of a node from a pole, in degrees, below which it has no longitude of its own.
@@ -289,12 +290,8 @@ def of_grid(grid: pv.StructuredGrid, there: Bools) -> tuple[pv.PolyData | pv.Uns
     """
     nx, ny, nz = grid.dimensions
     x, y, z = np.asarray(grid.points, dtype=np.float64).T.reshape(3, nz, ny * nx)
-    number = np.arange(ny * nx).reshape(ny, nx)
-    if _is_closed(x[0].reshape(ny, nx), y[0].reshape(ny, nx), there):
-        number = np.column_stack([number, number[:, 0]])
-    quads = np.stack(
-        [number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]], axis=-1
-    ).reshape(-1, 4)
+    is_closed = _is_closed(x[0].reshape(ny, nx), y[0].reshape(ny, nx), there)
+    quads = lattice.cells((ny, nx), (False, is_closed), by_rows=True)
     kept = quads[there.ravel()[quads].all(axis=1)]
     faces = unrolled(x[0], y[0], kept, np.ones(kept.shape, np.bool_))
     mesh = faces.mesh() if nz == 1 else _between(faces, z[:, 0])
@@ -302,8 +299,7 @@ def of_grid(grid: pv.StructuredGrid, there: Bools) -> tuple[pv.PolyData | pv.Uns
         rows = np.asarray(grid.point_data[name]).reshape(nz, ny * nx, -1)
         flat = np.concatenate([faces.at_points(layer) for layer in rows])
         mesh.point_data[name] = flat[:, 0] if flat.shape[1] == 1 else flat
-    for name in grid.field_data:
-        mesh.field_data[name] = grid.field_data[name]
+    mesh.field_data.update(grid.field_data)
     turn_vectors(mesh, faces, np.column_stack([x[0], y[0]]))
     return mesh, (len(quads) - len(kept)) * max(nz - 1, 1)
 

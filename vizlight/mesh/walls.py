@@ -7,7 +7,7 @@ import pyvista as pv
 
 from vizlight import _check
 from vizlight._types import Bools
-from vizlight.mesh import joining
+from vizlight.mesh import blocks, joining
 from vizlight.vtk.cells import connectivity
 from vizlight.vtk.corners import SHARP
 from vizlight.vtk.topology import place_numbers
@@ -91,9 +91,7 @@ def _joined(volume: pv.DataSet) -> pv.PolyData:
     cells.clear_data()
     # VTK numbers the cells of an inner step where some are quadratic; arrays go along.
     cells.cell_data[_OUTWARD] = volume.cell_centers().points
-    surface: pv.PolyData = cells.extract_surface(
-        algorithm="dataset_surface", pass_pointid=False, pass_cellid=False
-    )
+    surface = blocks.plain_surface(cells)
     if not surface.n_cells or surface.n_cells > surface.GetNumberOfPolys():
         return pv.PolyData()
     surface.cell_data[_OUTWARD] = surface.cell_centers().points - surface.cell_data[_OUTWARD]

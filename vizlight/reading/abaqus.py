@@ -17,6 +17,7 @@ import scipy
 
 from vizlight import _check
 from vizlight._types import Array, Indices
+from vizlight.vtk.cells import TYPES
 
 #: Names of elements, in which the number of their nodes stands, by the dimension of their cells.
 _FAMILIES = {
@@ -26,12 +27,6 @@ _FAMILIES = {
         r"|S|DS|M3D|R3D|SFM3D|STRI)(\d)"
     ),
     1: re.compile(r"(?:B[23]|T[23]D|PIPE[23]|F[23]D|R[2A][DX]|M?SAX|DSAX|MAX)(\d)"),
-}
-#: Cells of VTK by the dimension and the number of nodes.
-_CELLS = {
-    3: {4: 10, 5: 14, 6: 13, 8: 12, 10: 24, 15: 26, 20: 25},
-    2: {3: 5, 4: 9, 6: 22, 8: 23, 9: 28},
-    1: {2: 3, 3: 21},
 }
 #: Keywords by which nodes and elements are made of others.
 _MADE = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SUBMODEL"}
@@ -183,7 +178,7 @@ def _kind(name: str) -> tuple[int, int]:
             # nodes; trusses and rigid links have the number of nodes.
             if dimension == 1 and name[0] not in "RT":
                 size = {1: 2, 2: 3, 3: 2}.get(size, 0)
-            return size, _CELLS[dimension].get(size, 0)
+            return size, TYPES.get((dimension, size), 0)
     return 0, 0
 
 

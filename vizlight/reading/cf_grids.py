@@ -865,11 +865,9 @@ class _Reader:
 
     def _start(self, unit: str) -> str:
         """Return the date of the start of a forecast whose steps are in a unit without one."""
-        starts = [
-            one
-            for one in self.file.variables.values()
-            if one.ndim == 0 and one.attrs.get("standard_name") == "forecast_reference_time"
-        ]
+        singles = self._single_numbers(self.file.variables)
+        reference = "forecast_reference_time"
+        starts = [one for one in singles if one.attrs.get("standard_name") == reference]
         if dates.seconds(unit) is None or " since " in unit or not starts:
             return ""
         return dates.date(float(starts[0].values), str(starts[0].attrs.get("units", "")))

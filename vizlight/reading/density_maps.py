@@ -8,8 +8,9 @@ import numpy as np
 import pyvista as pv
 
 from vizlight._types import Foreign
-from vizlight.mesh import blocks, meaning
+from vizlight.mesh import meaning
 from vizlight.reading import file_parts
+from vizlight.reading.brains import of_affine
 
 SUFFIXES = (".mrc", ".ccp4", ".map")
 #: Name of the densities in words.
@@ -50,10 +51,6 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     if not first.any():
         # Microscopes say the place itself.
         first = np.array([chart.header_float(word) for word in _PLACE])
-    if np.count_nonzero(edges - np.diag(np.diag(edges))) == 0:
-        grid = pv.ImageData(dimensions=values.shape, spacing=np.diag(edges), origin=first)
-    else:
-        rows = np.indices(values.shape).reshape(3, -1, order="F")
-        grid = blocks.structured((edges @ rows).T + first, values.shape)
+    grid = of_affine(np.column_stack([edges, first]), values.shape)
     grid.point_data["density"] = values.ravel(order="F")
     return meaning.attach(grid, meaning.Meaning(arrays={"density": {"long_name": WORDS}}))

@@ -14,6 +14,7 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 from vizlight._types import Array, Bools, Indices
+from vizlight.geometry.nspace import lattice
 from vizlight.mesh import blocks
 from vizlight.mesh.nspace import POSITION
 from vizlight.reading import file_parts
@@ -138,17 +139,9 @@ def read_mesh(path: Path) -> pv.PolyData:
         grid = np.indices((rows, columns)).reshape(2, -1)[::-1].T
         table, place = np.hstack([grid, table]), 3
     mesh = _with_vertices(table, place, bool(normal), bool(coloured), textured=False)
-    mesh.SetPolys(_quadrilaterals(columns, rows, bool(u), bool(v)))
+    corners = lattice.cells((rows, columns), (v is not None, u is not None), by_rows=True)
+    mesh.SetPolys(pv.CellArray.from_regular_cells(corners.astype(int, copy=False)))
     return mesh
-
-
-def _quadrilaterals(columns: int, rows: int, u: bool, v: bool) -> pv.CellArray:
-    """Return the cells between vertices, row by row; ``u`` and ``v`` close them to a ring."""
-    at: Indices = np.arange(columns * rows).reshape(rows, columns)
-    at = np.hstack([at, at[:, :1]]) if u else at
-    at = np.vstack([at, at[:1]]) if v else at
-    corners = np.stack([at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]], axis=-1)
-    return pv.CellArray.from_regular_cells(corners.reshape(-1, 4).astype(int))
 
 
 def _rows(data: bytes) -> list[list[bytes]]:

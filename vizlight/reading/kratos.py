@@ -14,12 +14,8 @@ import pyvista as pv
 
 from vizlight._types import Foreign
 from vizlight.reading import file_parts
+from vizlight.vtk.cells import TYPES
 
-#: VTK's type of a cell by its dimension and the number of its corners.
-_TYPES = {
-    (0, 1): 1, (1, 2): 3, (1, 3): 21, (2, 3): 5, (2, 4): 9, (2, 6): 22, (2, 8): 23, (2, 9): 28,
-    (3, 4): 10, (3, 5): 14, (3, 6): 13, (3, 8): 12, (3, 10): 24, (3, 15): 26, (3, 20): 25,
-}  # fmt: skip
 #: Order of the corners of a type in VTK, where it is another.
 _ORDERS = {25: [*range(12), *range(16, 20), *range(12, 16)]}
 _BLOCK = re.compile(rb"(?ms)^[ \t]*Begin[ \t]+(Nodes|Elements|Conditions)\b([^\n]*)(.*?)\bEnd\b")
@@ -69,8 +65,8 @@ def _type(name: bytes, corners: int) -> int:
     """Return VTK's type of a cell: of the space's dimension, unless its name says it is thin."""
     space = 2 if b"2D" in name else 3
     for dimension in range(2 if _THIN.search(name) else space, -1, -1):
-        if (dimension, corners) in _TYPES:
-            return _TYPES[dimension, corners]
+        if (dimension, corners) in TYPES:
+            return TYPES[dimension, corners]
     raise ValueError(f"cells {name.decode('latin-1').strip()!r} with {corners} corners are unknown")
 
 

@@ -613,8 +613,7 @@ def _without_sets(data: pv.MultiBlock, *, is_fluent: bool) -> pv.MultiBlock:
     if not chosen:
         return data
     kept = pv.MultiBlock({name: data[name] for name in chosen})
-    for name in data.field_data:
-        kept.field_data[name] = data.field_data[name]
+    kept.field_data.update(data.field_data)
     return kept
 
 

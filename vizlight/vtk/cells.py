@@ -61,6 +61,11 @@ types_of_cells: Callable[[Foreign], vtkDataArray] = (
 _SUPPORT: Foreign = numpy_support
 #: Meshes with points along axes.
 GRIDS = (vtkImageData, vtkRectilinearGrid, vtkStructuredGrid, vtkExplicitStructuredGrid)
+#: VTK's type of a cell by its dimension and the number of its points.
+TYPES = {
+    (0, 1): 1, (1, 2): 3, (1, 3): 21, (2, 3): 5, (2, 4): 9, (2, 6): 22, (2, 8): 23, (2, 9): 28,
+    (3, 4): 10, (3, 5): 14, (3, 6): 13, (3, 8): 12, (3, 10): 24, (3, 15): 26, (3, 20): 25,
+}  # fmt: skip
 #: Number of an array of VTK by the type of its values, which VTK looks for in a list.
 _vtk_type: Callable[[RawType], int] = functools.cache(_SUPPORT.get_vtk_array_type)
 

@@ -81,7 +81,7 @@ def part_of(
     TypeError, ValueError
         If an array is missing or does not fit, or options contradict each other.
     """
-    try:
+    with _check.in_block(path):
         points = points_of(mesh, options.positions)
         n = int(points.shape[1])
         tangents = _tangents(mesh, n, options, kept_tangents)
@@ -103,11 +103,6 @@ def part_of(
             alike = scene.view is None and (
                 options.facing == "eye" or (options.facing == "auto" and sided.any_open)
             )
-    except (TypeError, ValueError) as error:
-        if not path:
-            raise
-        # The same kind of error, so that callers tell a wrong type from a wrong value.
-        raise type(error)(f"block {path}: {error}") from error
     inputs = ShadingInputs(
         points=points,
         occlusion=share_of(mesh, options.occlusion, path),
@@ -164,11 +159,11 @@ def share_of(mesh: Dataset, name: str | None, path: str = "") -> Array | None:
         return None
     array = named(mesh.GetPointData(), name)
     if array is None or array.ndim != 1:
-        where = f"block {path}: " if path else ""
         got = repr(name) if array is None else f"{name!r} with {array.shape[1]} components"
         remedy = "vizlight.sky(mesh) makes the array 'sky'"
         expected = "the name of a point array of 1 component"
-        raise ValueError(where + _check.message("occlusion", expected, got, remedy))
+        with _check.in_block(path):
+            raise _check.value_error("occlusion", expected, got, remedy)
     return _check.floats("occlusion", array)
 
 

@@ -42,7 +42,7 @@ def resolution(value: int | Sequence[int], k: int, closed: Sequence[bool]) -> tu
     return counts
 
 
-def cells(shape: Sequence[int], closed: Sequence[bool]) -> Indices:
+def cells(shape: Sequence[int], closed: Sequence[bool], *, by_rows: bool = False) -> Indices:
     """Return the cells of a lattice of 1 to 3 directions; the last index runs fastest.
 
     Parameters
@@ -51,6 +51,8 @@ def cells(shape: Sequence[int], closed: Sequence[bool]) -> Indices:
         Number of samples in each direction.
     closed : sequence of bool
         Whether the last sample of a direction is followed by its first.
+    by_rows : bool, default: False
+        Whether quadrilaterals go along the last direction first, as those of images.
 
     Returns
     -------
@@ -65,4 +67,6 @@ def cells(shape: Sequence[int], closed: Sequence[bool]) -> Indices:
         index[tuple(slice(c, n - 1 + c) for c, n in zip(corner, index.shape, strict=True))]
         for corner in _CORNERS[len(shape)]
     ]
-    return np.stack([part.ravel() for part in parts], axis=1)
+    if by_rows:
+        parts[1:] = parts[:0:-1]
+    return np.stack(parts, axis=-1).reshape(-1, len(parts))
