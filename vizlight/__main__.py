@@ -7,6 +7,10 @@ import importlib
 import signal
 import sys
 from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from vizlight._types import Foreign
 
 __all__ = ["main"]
 
@@ -22,23 +26,35 @@ def main() -> int:
 
 
 class _Late(ModuleType):
-    """A module that is loaded when something of it is used."""
+    """A module that is loaded when something of it is used, but for a class that is only named."""
 
-    def __getattr__(self, name: str) -> object:
+    def __init__(self, name: str, *classes: str) -> None:
+        super().__init__(name)
+        for cls in classes:
+            setattr(self, cls, lambda *values, cls=cls: self.__getattr__(cls)(*values))
+
+    def __getattr__(self, name: str) -> Foreign:
         # The import system, and what looks through all modules, asks for names like "__file__".
         if name.startswith("__"):
             raise AttributeError(name)
-        if sys.modules.get(self.__name__) is self:
-            del sys.modules[self.__name__]
-        value: object = getattr(importlib.import_module(self.__name__), name)
-        return value
+        for late in _LATE:
+            if sys.modules.get(late.__name__) is late:
+                del sys.modules[late.__name__]
+        return getattr(importlib.import_module(self.__name__), name)
+
+
+#: Modules that PyVista imports for its charts alone, half of the time that its plotting takes.
+_LATE = (
+    _Late("matplotlib.pyplot"),
+    _Late("matplotlib.backends.backend_agg", "FigureCanvasAgg"),
+)
 
 
 def _command_line() -> int:
     # Modules leave no garbage while they load: to look for it takes a quarter of a short job.
     gc.disable()
-    # PyVista imports it for its charts alone, a third of the time that its plotting takes to load.
-    sys.modules.setdefault("matplotlib.pyplot", _Late("matplotlib.pyplot"))
+    for late in _LATE:
+        sys.modules.setdefault(late.__name__, late)
     try:
         from vizlight import cli
     except KeyboardInterrupt:
