@@ -104,8 +104,7 @@ print("LOADED", isinstance(chart._canvas, backend_agg.FigureCanvasAgg))
 """
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert picture.exists()
-    lines = [line for line in run.stdout.splitlines() if line.startswith("LOADED")]
-    loaded, *figures = lines
+    loaded, *figures = [line for line in run.stdout.splitlines() if line.startswith("LOADED")]
     # SciPy itself loads its parts when they are used.
     private = ("LOADED", "scipy._", "scipy.version")
     assert [name for name in loaded.split() if not name.startswith(private)] == []

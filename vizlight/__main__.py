@@ -25,36 +25,32 @@ def main() -> int:
     return _supervise.run(_command_line)
 
 
-class _Late(ModuleType):
-    """A module that is loaded when something of it is used, but for a class that is only named."""
+#: Modules that PyVista imports for its charts alone, half of the time that its plotting takes.
+_OF_CHARTS = ("matplotlib.pyplot", "matplotlib.backends.backend_agg")
 
-    def __init__(self, name: str, *classes: str) -> None:
-        super().__init__(name)
-        for cls in classes:
-            setattr(self, cls, lambda *values, cls=cls: self.__getattr__(cls)(*values))
+
+class _Late(ModuleType):
+    """A module that is loaded when something of it is used."""
 
     def __getattr__(self, name: str) -> Foreign:
         # The import system, and what looks through all modules, asks for names like "__file__".
         if name.startswith("__"):
             raise AttributeError(name)
-        for late in _LATE:
-            if sys.modules.get(late.__name__) is late:
-                del sys.modules[late.__name__]
+        for late in _OF_CHARTS:
+            if isinstance(sys.modules.get(late), _Late):
+                del sys.modules[late]
         return getattr(importlib.import_module(self.__name__), name)
 
-
-#: Modules that PyVista imports for its charts alone, half of the time that its plotting takes.
-_LATE = (
-    _Late("matplotlib.pyplot"),
-    _Late("matplotlib.backends.backend_agg", "FigureCanvasAgg"),
-)
+    def FigureCanvasAgg(self, figure: object) -> Foreign:  # noqa: N802 - imported by its name
+        """Return a canvas for a figure, by the class that PyVista imports and rarely calls."""
+        return self.__getattr__("FigureCanvasAgg")(figure)
 
 
 def _command_line() -> int:
     # Modules leave no garbage while they load: to look for it takes a quarter of a short job.
     gc.disable()
-    for late in _LATE:
-        sys.modules.setdefault(late.__name__, late)
+    for name in _OF_CHARTS:
+        sys.modules.setdefault(name, _Late(name))
     try:
         from vizlight import cli
     except KeyboardInterrupt:

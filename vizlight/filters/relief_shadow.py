@@ -114,6 +114,7 @@ class Shadows(NamedTuple):
         share = share_of(sunlit, options.occlusion)
         if sunlit is not ground:
             # The sky stays with the result, which may be lit again.
+            assert isinstance(sunlit, Grid | pv.PolyData)
             sunlit.point_data.active_normals_name = surface.point_data.active_normals_name
             surface = sunlit
         return cls(surface, caster(surface, scene, options), lights, share)
