@@ -7,6 +7,10 @@ import importlib
 import signal
 import sys
 from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from vizlight._types import Foreign
 
 __all__ = ["main"]
 
@@ -21,24 +25,32 @@ def main() -> int:
     return _supervise.run(_command_line)
 
 
+#: Modules that PyVista imports for its charts alone, half of the time that its plotting takes.
+_OF_CHARTS = ("matplotlib.pyplot", "matplotlib.backends.backend_agg")
+
+
 class _Late(ModuleType):
     """A module that is loaded when something of it is used."""
 
-    def __getattr__(self, name: str) -> object:
+    def __getattr__(self, name: str) -> Foreign:
         # The import system, and what looks through all modules, asks for names like "__file__".
         if name.startswith("__"):
             raise AttributeError(name)
-        if sys.modules.get(self.__name__) is self:
-            del sys.modules[self.__name__]
-        value: object = getattr(importlib.import_module(self.__name__), name)
-        return value
+        for late in _OF_CHARTS:
+            if isinstance(sys.modules.get(late), _Late):
+                del sys.modules[late]
+        return getattr(importlib.import_module(self.__name__), name)
+
+    def FigureCanvasAgg(self, figure: object) -> Foreign:  # noqa: N802 - imported by its name
+        """Return a canvas for a figure, by the class that PyVista imports and rarely calls."""
+        return self.__getattr__("FigureCanvasAgg")(figure)
 
 
 def _command_line() -> int:
     # Modules leave no garbage while they load: to look for it takes a quarter of a short job.
     gc.disable()
-    # PyVista imports it for its charts alone, a third of the time that its plotting takes to load.
-    sys.modules.setdefault("matplotlib.pyplot", _Late("matplotlib.pyplot"))
+    for name in _OF_CHARTS:
+        sys.modules.setdefault(name, _Late(name))
     try:
         from vizlight import cli
     except KeyboardInterrupt:

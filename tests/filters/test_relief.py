@@ -424,14 +424,16 @@ def test_a_plane_is_lit_alike_at_its_border_and_beside_a_hole(hole):
         np.testing.assert_allclose(t[there], max(cosine, 0), atol=0.01 if cosine > 0 else 0.05)
 
 
-def test_a_shadow_is_cast_once_for_a_field_and_its_picture(calls_of):
+def test_a_shadow_is_cast_once_for_a_field_and_its_picture_as_is_its_sky(calls_of, monkeypatch):
     field = pv.ImageData(dimensions=(12, 12, 1))
     field["height"] = 2 * np.sin(np.arange(144.0))
-    shadowed = relief_shadow(field, sun=(315, 40), lit=True)
+    shadowed = relief_shadow(field, sun=(315, 40), lit=True, occlusion="sky")
     cast = calls_of(Shadows, "ratios")
+    monkeypatch.setattr("vizlight.filters.sky.skies", lambda *_, **__: cast.append(1))
     (source,), _ = relight.from_record(shadowed)
     assert not cast
     np.testing.assert_array_equal(source.inputs.shadow[:, 0], shadowed["t"])
+    np.testing.assert_array_equal(source.inputs.occlusion, shadowed["sky"])
     # Another light, or an array of another call, does not fit.
     other = Scene(lights=Light(direction=(1, 0, 1)))
     relight.from_record(shadowed, other)

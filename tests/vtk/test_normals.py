@@ -31,7 +31,8 @@ def test_normals_of_open_pieces_turn_outward_and_to_the_eye(winding):
 
 @pytest.mark.parametrize("axis", [(0, 0, 1), (-1, 0, 0), (0, 1, 0)])
 @pytest.mark.parametrize("case", ["map", "triangles", "folded", "wound"])
-def test_maps_have_the_normals_that_a_search_finds(axis, case, monkeypatch):
+@pytest.mark.parametrize("eye", [None, (1, 2, 3), (-1, -2, -3)])
+def test_maps_have_the_normals_that_a_search_finds(axis, case, eye, monkeypatch):
     sheet = pv.Plane(direction=axis, i_resolution=4, j_resolution=3)
     sheet.clear_data()
     sheet = sheet if case == "map" else sheet.triangulate()
@@ -44,12 +45,14 @@ def test_maps_have_the_normals_that_a_search_finds(axis, case, monkeypatch):
         faces[3] = faces[3, ::-1]
         sheet = pv.PolyData.from_regular_faces(sheet.points, faces)
     sheet.points = np.vstack([sheet.points, sheet.points[:1]])
-    quick = normals.computed_normals(sheet)
+    view = None if eye is None else View(direction=eye)
+    quick = normals.computed_normals(sheet, view=view)
     is_map = orientation.normal_of_map(sheet) is not None
     assert is_map == (case in ("map", "triangles"))
     # Other points, as results are kept.
     monkeypatch.setattr(orientation, "normal_of_map", lambda _: None)
-    searched = normals.computed_normals(pv.PolyData(np.asarray(sheet.points) * 2, sheet.faces))
+    larger = pv.PolyData(np.asarray(sheet.points) * 2, sheet.faces)
+    searched = normals.computed_normals(larger, view=view)
     np.testing.assert_array_equal(quick.vectors, searched.vectors)
     np.testing.assert_array_equal(quick.lean, searched.lean)
     used = quick.vectors.any(axis=1)

@@ -112,6 +112,11 @@ class Shadows(NamedTuple):
             up=ABOVE if is_raster else None,
         )  # fmt: skip
         share = share_of(sunlit, options.occlusion)
+        if sunlit is not ground:
+            # The sky stays with the result, which may be lit again.
+            assert isinstance(sunlit, Grid | pv.PolyData)
+            sunlit.point_data.active_normals_name = surface.point_data.active_normals_name
+            surface = sunlit
         return cls(surface, caster(surface, scene, options), lights, share)
 
     def ratios(self, options: ReliefOptions, *, progress_bar: bool) -> Array:
@@ -222,6 +227,7 @@ def relief_shadow(
     occlusion : str, optional
         Name of a point array that multiplies the ambient term of the light, as for
         :func:`vizlight.illuminate`: ``lit=True, occlusion="sky"`` is the light of sun and sky.
+        A sky that is computed stays with the result.
     name : str, default: "t"
         Name of the result.
     depth : float, optional

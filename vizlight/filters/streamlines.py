@@ -546,7 +546,7 @@ def _in_space(
     count = min(count, len(points))
     random = np.random.default_rng(how.seed)
     chosen = np.sort(random.choice(there, min(count, len(there)), replace=False))
-    rest = random.permutation(np.setdiff1d(np.arange(len(points)), chosen))
+    rest = random.permutation(np.delete(np.arange(len(points)), chosen))
     # A point at rest starts no line.
     moving = np.any(np.asarray(mesh.point_data[TRACED])[rest] != 0, axis=1)
     rest, lines = rest[moving], tracers.in_space(mesh, points[chosen], how, report)

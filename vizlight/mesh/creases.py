@@ -12,7 +12,7 @@ from vizlight.vtk.cells import check_whole, connectivity
 from vizlight.vtk.corners import SHARP, sharp_edges
 from vizlight.vtk.memory import once
 from vizlight.vtk.normals import creases as share_of_creases
-from vizlight.vtk.topology import coincident
+from vizlight.vtk.topology import are_closed, coincident
 
 #: Size of connected edges, as a share of that of the surface, below which they are roughness.
 SHORT = 0.1
@@ -106,6 +106,8 @@ def borders(surface: pv.PolyData, /) -> pv.PolyData:
     80
     """
     _check_surface(surface)
+    if are_closed(surface)[0].all():
+        return pv.PolyData()
     edges = surface.extract_feature_edges(
         boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
     )

@@ -36,7 +36,7 @@ from vizlight.vtk.cells import (
 )
 from vizlight.vtk.corners import MANY_SHARP, SHARP, numbered, split_faces
 from vizlight.vtk.parts import Part
-from vizlight.vtk.topology import coincident
+from vizlight.vtk.topology import coincident, place_numbers
 
 MeshT = TypeVar("MeshT", bound=pv.DataSet)
 SurfaceT = TypeVar("SurfaceT")
@@ -486,13 +486,15 @@ def welded(mesh: MeshT) -> MeshT:
     parts = [np.asarray(mesh.points) + 0, *map(np.asarray, mesh.point_data.values())]
     if any(part.dtype.kind not in "biuf" for part in parts):
         return mesh
-    # By bytes, in which NaN equals NaN: a vertex without a value is welded like any other.
-    rows = [np.ascontiguousarray(part.reshape(len(part), -1)).view(np.uint8) for part in parts]
-    table = np.ascontiguousarray(np.hstack([row.reshape(mesh.n_points, -1) for row in rows]))
-    _, first, same = np.unique(
-        table.view(f"V{table.shape[1]}"), return_index=True, return_inverse=True
-    )
-    first = first[same.reshape(-1)]
+    first, places_in_order = np.arange(mesh.n_points), np.sort(place_numbers(parts[0]))
+    if np.any(places_in_order[1:] == places_in_order[:-1]):
+        # By bytes, in which NaN equals NaN: a vertex without a value is welded like any other.
+        rows = [np.ascontiguousarray(part.reshape(len(part), -1)).view(np.uint8) for part in parts]
+        table = np.ascontiguousarray(np.hstack([row.reshape(mesh.n_points, -1) for row in rows]))
+        _, chosen, same = np.unique(
+            table.view(f"V{table.shape[1]}"), return_index=True, return_inverse=True
+        )
+        first = chosen[same.reshape(-1)]
     kept = np.zeros(mesh.n_points, dtype=np.bool_)
     for cells in cell_arrays(mesh):
         kept[first[connectivity(cells)[0]]] = True

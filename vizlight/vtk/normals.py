@@ -304,15 +304,15 @@ def sided_normals(
 
 def _of_given(surface: vtkPolyData, normals: Array, block: Indices | None) -> tuple[Bools, Bools]:
     """Return which blocks of a surface have normals that point inside, and which have a border."""
-    of = np.zeros(len(normals), dtype=np.intp) if block is None else block
-    count = int(of.max(initial=0)) + 1
-    closed, alike = are_closed(surface, of, count)
+    closed, alike = are_closed(surface, block)
+    of, count = np.zeros(len(normals), dtype=np.intp) if block is None else block, len(closed)
     doubtful = closed & ~alike
     if doubtful.any():
         # A closed surface whose faces have no common side, such as Boy's, has no outside.
         shape = orientation.SurfaceShape(surface, block=of)
         _wound(surface, shape, as_wound=False)
-        closed &= alike | (np.bincount(of, shape.inside_out[shape.piece], count) == 0)
+        inside_out = np.bincount(of, shape.inside_out[shape.piece], count) > 0
+        closed = closed & (alike | ~inside_out)
     if not closed.any():
         return closed, ~closed
     ids = np.flatnonzero(vtk_cells.used(surface))
@@ -508,8 +508,8 @@ def _computed(
         return _of_grid(mesh, view, as_wound=as_wound, sides=sides)
     part = None if vote is None else vote.side
     is_whole = vote is None and outer is None and block is None
-    if is_whole and sides and view is None and not as_wound:
-        on_map = _of_map(mesh)
+    if is_whole and sides and not as_wound:
+        on_map = _of_map(mesh, view)
         if on_map is not None:
             return on_map
     if block is not None:
@@ -597,10 +597,15 @@ def wound_normals(
     return shape, vectors, first, origin
 
 
-def _of_map(mesh: Dataset) -> Sided | None:
+def _of_map(mesh: Dataset, view: View | None) -> Sided | None:
     """Return the normals of a map, one height field without an edge; None for another mesh."""
     if not isinstance(mesh, vtkPolyData) or (normal := orientation.normal_of_map(mesh)) is None:
         return None
+    if view is not None and len(view.position or view.direction or ()) == 3:
+        # Across its plane all points are at one place.
+        axis = np.flatnonzero(normal)
+        toward = orientation.toward_eye(view, vtk_cells.places(mesh)[:1])[axis, 0]
+        normal[axis] = np.where(normal[axis] * toward < 0, -normal[axis], normal[axis])
     # A point without a face has no normal.
     vectors: Array = np.where(vtk_cells.used(mesh)[:, np.newaxis], normal, 0.0).astype(np.float32)
     lean = np.zeros(len(vectors), dtype=np.float32)

@@ -13,6 +13,7 @@ from vizlight import _pool
 from vizlight._types import Bools, Indices, Raw, Slice
 from vizlight.geometry.lines.simplices import EDGES, components
 from vizlight.vtk.cells import firsts, mixed, places, triangles
+from vizlight.vtk.memory import once
 
 #: Largest number of parts of edges that are sorted.
 PARTS = 16
@@ -257,7 +258,7 @@ def coincident(points: Raw, block: Indices | None = None) -> Indices | None:
     return None if apart.all() else same
 
 
-def are_closed(surface: vtkPolyData, block: Indices, count: int) -> tuple[Bools, Bools]:
+def are_closed(surface: vtkPolyData, block: Indices | None = None) -> tuple[Bools, Bools]:
     """Return whether all edges have an even number of faces, and whether these are wound alike.
 
     Places make an edge. The numbers of the edges, made from the coordinates of their ends, cancel
@@ -266,15 +267,17 @@ def are_closed(surface: vtkPolyData, block: Indices, count: int) -> tuple[Bools,
     Parameters
     ----------
     surface : vtkPolyData
-    block : ndarray of int, shape (n_points,)
-        Number of the block of each point.
-    count : int
-        Number of blocks.
+    block : ndarray of int, shape (n_points,), optional
+        Number of the block of each point. Default: all are in one, and the result is kept.
 
     Returns
     -------
-    closed, alike : ndarray of bool, shape (count,)
+    closed, alike : ndarray of bool, shape (n_blocks,)
     """
+    if block is None:
+        every = np.zeros(surface.GetNumberOfPoints(), dtype=np.intp)
+        return once(surface, "closed", lambda: are_closed(surface, every))
+    count = int(block.max(initial=0)) + 1
     rows, number = triangles(surface), place_numbers(places(surface))
     # Without a sort, which would hold several numbers for each edge at once.
     odd, sums = np.zeros((2, count), dtype=np.uint64)

@@ -255,11 +255,12 @@ class Simplices:
         # Neighbours name each other: each pair counts once, the lower one first.
         once = owner < beyond
         part = components(owner[once], beyond[once], len(self.cells))[cells]
-        # The largest cell of a part comes first.
-        order = np.lexsort((-self.measures[cells], part))
-        first = np.unique(part[order], return_index=True)[1]
+        measures, largest = self.measures[cells], np.zeros(len(self.cells))
+        np.maximum.at(largest, part, measures)
+        chosen = np.flatnonzero(measures == largest[part])
+        first = chosen[np.unique(part[chosen], return_index=True)[1]]
         share = np.full((len(first), self.k + 1), 1 / (self.k + 1))
-        return CellPlaces(cells[order[first]], share)
+        return CellPlaces(cells[first], share)
 
     def positions(self, places: CellPlaces) -> Array:
         """Return the positions of places, shape (N, 3)."""
