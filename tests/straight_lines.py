@@ -48,6 +48,9 @@ def some_lines(kind, random, count=1200, length=0.5):
         tangents = unit([1, 0, 0] + 0.1 * tangents)
     elif kind == "parallel":
         tangents = np.tile([1.0, 0, 0], (count, 1))
+    elif kind == "crossing":
+        ways = np.where(np.arange(count)[:, np.newaxis] % 2, [1, 0, 0], [0.5, 0.75**0.5, 0])
+        tangents = unit(ways + 0.05 * tangents)
     elif kind == "layered":
         layer = random.integers(6, size=count)
         middles = random.uniform(-0.8, 0.8, (count, 3))
