@@ -35,13 +35,13 @@ LINK = (Path(__file__).parent / "link.js").read_text("utf-8")
 #: Sections of the gallery, their scripts, and what a reader who cannot see the pictures is told.
 SECTIONS = {
     "Which way does it run?": {
-        "plot_winds": "Globe of winds in hues of their direction, with lines, coasts and a disc",
+        "plot_winds": "Globe of winds in hues of their direction, with arrows, coasts and a disc",
         "plot_read_direction": "Six globes: plain, arrows, LIC, lines, white light, and hues",
         "plot_principal_lines": "Gyroid, plain and engraved by lines of its curvature",
         "plot_satin": "Satin ball lit by its threads, with a highlight across them",
     },
     "How steep is it, and which end is near?": {
-        "plot_read_slope": "Arch of nerve fibres: tan tubes, and white to dark by slope",
+        "plot_read_slope": "Arch of nerve fibres: tan tubes, and pale to brown by slope",
         "plot_read_heading": "Arch of nerve fibres in hues of the near end, with their key",
         "plot_depth": "Thread wound on a ball, twice: bright all over, and fading with depth",
         "plot_fur": "Head and shoulders of a golden dog whose hair lies back",

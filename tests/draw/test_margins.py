@@ -100,6 +100,13 @@ def test_words_of_a_key_take_few_lines():
     assert key._lines == ["the way", "it faces"]
 
 
+def test_no_word_beside_a_disc_is_broken():
+    key = margins.MarginKey(presets.key(presets.direction()), 0.15, (0, 0, 0), lying=False)
+    # Of a narrow column of a picture: letters become smaller in place of it.
+    key.fit(1200, margins.LETTERS * 1200, 130, 0, alone=True)
+    assert " ".join(key._lines) == "direction on the screen"
+
+
 def test_words_of_a_bar_that_do_not_fit_are_left_out_evenly():
     places = [0.1 * i for i in range(11)]
     assert all(margins._thinned(places, 0.0, 11))

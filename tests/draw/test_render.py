@@ -399,3 +399,18 @@ def test_a_bar_beside_several_panels_takes_the_width_of_none():
     widths = np.array([right - left for left, _, right, _ in views])
     assert np.ptp(widths[np.logical_not(bars)]) < 1e-9
     assert widths[bars] == pytest.approx(render.BAR_COLUMN * widths[0])
+
+
+@pytest.mark.opengl
+def test_what_is_drawn_stands_in_the_middle_below_a_title():
+    """Titles have room of their own, and the letters of a bar are as large."""
+    rows = []
+    for title in ("", "A\nB"):
+        plotter = render.make_plotter(render.Panel(BALL, title=title), size=(1000, 800), bar="unit")
+        seen = plotter.screenshot(return_img=True)
+        rows.append(np.nonzero((seen[:, 300:700] < 200).all(axis=2).sum(axis=1) > 50)[0].mean())
+        bar = next(iter(plotter.scalar_bars.values()))
+        assert bar.GetLabelTextProperty().GetFontSize() == 40
+        plotter.close()
+    # Half of two lines of 1.3 times 40 pixels.
+    assert rows[1] - rows[0] == pytest.approx(52, abs=2)

@@ -25,7 +25,7 @@ from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on
-from vizlight.draw.scalar_bars import name_no_data
+from vizlight.draw.scalar_bars import LETTER, name_no_data
 from vizlight.draw.several_views import several_views
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
@@ -213,6 +213,7 @@ def make_plotter(
             off_screen=True, window_size=pixels, border=False, shape=(rows, columns + beside),
             col_weights=weights, groups=groups,
         )  # fmt: skip
+    em = max(10, pixels[0] // columns // 50)  # half the height of letters, readable in print
     if anti_aliasing == "auto":
         anti_aliasing = "ssaa" if any(map(has_lines_only, meshes)) else "msaa"
     if anti_aliasing == "ssaa" and len(shown) > 1 and not SUPERSAMPLES_PARTS:
@@ -231,7 +232,6 @@ def make_plotter(
             lit = light == "auto" and plain
             _draw(plotter, panel, cmap, clim, lines, camera, fragments=lit)
             if panel.title:
-                em = max(10, pixels[0] // columns // 50)  # readable in a column of print
                 text = plotter.add_text(panel.title, position="upper_edge", font_size=em, color=ink)
                 # VTK sets it so near to the edge that letters touch it.
                 text.GetTextProperty().SetLineOffset(8)
@@ -239,6 +239,9 @@ def make_plotter(
             # A copy for each panel: the clipping planes fit what it shows, and the caller's camera
             # stays as it was.
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
+            # What is drawn stands in the middle of the room below the title.
+            title_lines = bool(panel.title) * (1 + panel.title.count("\n"))
+            plotter.camera.SetWindowCenter(0, 2.6 * em * title_lines * rows / pixels[1])
             plotter.reset_camera_clipping_range()
         if key is not None:
             plotter.vizlight.show_key(key, size=KEY_SIZE, color=ink)
@@ -248,13 +251,20 @@ def make_plotter(
             if beside:
                 plotter.subplot(0, columns)
                 plotter.background_color = back
-                width, left = 0.1 / BAR_COLUMN, 0.2
+                width, left = 0.1 / BAR_COLUMN, 0.3
             scalar_bar = plotter.add_scalar_bar(  # type: ignore[call-arg]
                 title=bar, mapper=mapper, color=ink, n_labels=3, fmt="%.1f", vertical=True,
                 height=0.7, width=width, position_x=left, position_y=0.12,
             )  # fmt: skip
             # A gap between the title and the numbers.
             scalar_bar.SetTitle(f"{bar}\n")
+            # Letters as large as those of titles of panels, if the column has room for the title.
+            room = plotter.renderer.GetSize()[0] * (0.9 if beside else 0.3)
+            longest = max(map(len, bar.splitlines()))
+            letters = int(min(2 * em, room / (LETTER * longest)))
+            scalar_bar.SetUnconstrainedFontSize(True)
+            for words in (scalar_bar.GetTitleTextProperty(), scalar_bar.GetLabelTextProperty()):
+                words.SetFontSize(letters)
             if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
                 name_no_data(scalar_bar)
     except BaseException:
