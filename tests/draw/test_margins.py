@@ -98,11 +98,8 @@ def test_words_of_a_key_take_few_lines():
     # Of a picture of 1200 by 800 pixels.
     key.fit(800, margins.LETTERS * 800, 120, 0, alone=True)
     assert key._lines == ["the way", "it faces"]
-
-
-def test_no_word_beside_a_disc_is_broken():
+    # In a narrow column no word is broken: its letters become smaller.
     key = margins.MarginKey(presets.key(presets.direction()), 0.15, (0, 0, 0), lying=False)
-    # Of a narrow column of a picture: letters become smaller in place of it.
     key.fit(1200, margins.LETTERS * 1200, 130, 0, alone=True)
     assert " ".join(key._lines) == "direction on the screen"
 
