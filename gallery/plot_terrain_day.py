@@ -41,7 +41,7 @@ plotter = render.make_plotter(
     size=(1340, 1000),
     cmap="cividis",
     background="white",
-    bar="share of\nfull sunlight",
+    bar="share\nof full\nsunlight",
 )
 east, south = terrain.bounds[1], terrain.bounds[2]
 scale = pv.Box((east - 3000, east, south - 500, south - 300, 0, 1))
