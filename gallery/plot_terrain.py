@@ -14,7 +14,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from vizlight import Light, Material, Scene, legibility, load_example, relief_shadow, render, tint
 
 tints = ["#27558f", "#3a80b4", "#7cbcd6", "#b2dce4", "#5f9a52", "#b5965f", "#f4efe6"]
-places = [0, 0.3, 0.58, 0.666, 0.6667, 0.83, 1]  # of heights from -6000 to 3000 m
+places = [0, 0.3, 0.58, 0.6667, 0.6706, 0.83, 1]  # of heights from -6000 to 3000 m
 tints = LinearSegmentedColormap.from_list("sea and land", list(zip(places, tints, strict=True)))
 relief = load_example("hawaii.vti").resample(6.0, interpolation="bspline")
 relief = relief.gaussian_smooth(std_dev=4)

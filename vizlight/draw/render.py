@@ -148,7 +148,7 @@ def make_plotter(
         Diameter of lines in the unit of the mesh, in place of ``line_width``: nearer lines are
         wider. They are bands that face the eye, at least half a pixel wide.
     render_lines_as_tubes : bool, default: False
-        Whether lines wider than a pixel have the light of a cylinder across their width, whose mean
+        Whether lines wider than a pixel have the light of a cylinder across their width: its mean
         is that of ``model="cylinder"``. They keep their own light where it is not computed in each
         fragment, as with ``light="points"``, on a surface that conditions it, or in a bundle.
     halo : bool, float or str, default: False
