@@ -47,7 +47,7 @@ QUESTIONS = {
     ),
     "slope": Question(
         "Slope", "Bright is across your view, dark is along it.",
-        ("across the view", "along the view"), "bar", of_tangents=True,
+        ("across view", "along view"), "bar", of_tangents=True,
     ),
     "heading": Question(
         "Heading", "Hue tells the direction and which end is near.",
