@@ -21,12 +21,12 @@ view = {"direction": (0.2, -1, 0.12), "up": (0, 0, 1)}
 relief = vizlight.bas_relief(dog, resolution=3000, height=0.06, margin=0.1, **view)
 # A cast has no edges as sharp as a step of the depth map.
 relief = relief.gaussian_smooth(scalars="height", std_dev=10).resample(1 / 3)
-plaster = Material(ambient=0.08, diffuse=0.85, specular=0.0, color=(1.0, 0.9, 0.76))
+plaster = Material(ambient=0.12, diffuse=0.85, specular=0.0, color=(1.0, 0.9, 0.76))
 panels = []
 for side, x, depth in (
     ("left", -0.9, 0.005), ("right", 0.9, 0.005), ("left", -0.9, 0.01), ("left", -0.9, 0.02),
 ):  # fmt: skip
-    scene = Scene(lights=Light(position=(x, 0.8, 1.0)), material=plaster)
+    scene = Scene(lights=Light(position=(x, 0.8, 1.0), intensity=1.08), material=plaster)
     lit = vizlight.relief_shadow(relief, scene, depth=depth, lit=True)
     panels.append(render.Panel(lit, "rgb", f"lamp at the {side}, depth d = {depth}"))
 
@@ -54,7 +54,7 @@ along = np.linspace(start, lamp, 2001)
 inside = along[:, 1] < np.interp(along[:, 0], x, z)
 length = np.hypot(*(lamp - start)) * np.mean(inside)
 axes.plot(*along.T, color="0.5", lw=1.5)
-text = {"fontsize": 15, "ha": "center", "va": "center"}
+text = {"fontsize": 18, "ha": "center", "va": "center"}
 for part, name in ((along[:, 0] < 5, "$r_1$"), (along[:, 0] >= 5, "$r_2$")):
     piece = along[inside & part]
     axes.plot(*piece.T, color="#d1661b", lw=5, solid_capstyle="butt")
@@ -65,7 +65,7 @@ axes.plot(*lamp, "*", color="#e8a800", ms=20)
 axes.text(*np.add(start, (-0.32, 0.0)), "$p'$", **text)
 axes.text(*np.add(surface, (-0.25, -0.25)), "$d$", **text)
 axes.text(*np.add(lamp, (0, -0.45)), "lamp", **text)
-axes.text(2.2, 3.6, f"$t = d / (r_1 + r_2) = {0.6 / length:.2f}$", fontsize=18, ha="center")
+axes.text(2.2, 3.6, f"$t = d / (r_1 + r_2) = {0.6 / length:.2f}$", fontsize=20, ha="center")
 axes.set(aspect="equal", xlim=(0, 10), ylim=(0, 4.7))
 axes.set_axis_off()
 plt.show()

@@ -24,9 +24,8 @@ curve = manifolds.parametric(
 )  # fmt: skip
 shapes, far = {1: curve, 2: manifolds.torus(1.5, 0.75, resolution=192)}, {"distance": 1.6771}
 matte = Material(ambient=0.0, diffuse=1.0, specular=0.0, color="white")
-# The torus below the curves has the colour of the ground, so that their brightness can be compared.
-below, ground = vizlight.manifold(shapes[2], **far), "#2f4664"
-below["rgb"] = np.tile(pv.Color(ground).float_rgb, (below.n_points, 1))
+below = vizlight.manifold(shapes[2], **far)
+below["rgb"] = np.tile(pv.Color("#2f4664").float_rgb, (below.n_points, 1))
 panels = []
 for exponent in (1, "compensated"):
     for k, n, when in ((1, 3, "after"), (1, 4, "before"), (2, 3, "after"), (2, 4, "before")):
@@ -36,7 +35,10 @@ for exponent in (1, "compensated"):
         title = f"{'curve' if k == 1 else 'surface'} in {n}-space, exponent {p:.3g}\n"
         title += f"mean {mean:.2f}, contrast {mesh['luminance'].std() / mean:.2f}"
         panels.append(render.Panel(mesh if k == 2 else pv.MultiBlock([below, mesh]), "rgb", title))
-camera = render.camera_on((*below.bounds[:5], below.bounds[5] + 0.7), (0.25, -1, 0.85), zoom=1.38)
-look = {"rows": 2, "size": (1800, 840), "background": ground, "line_diameter": 0.045, "halo": 0.3}
+camera = render.camera_on(below, (0.25, -1, 0.85), zoom=1.02)
+look = {"rows": 2, "size": (1800, 800), "background": "white", "line_diameter": 0.045}
 plotter = render.make_plotter(panels, camera=camera, **look)
+for place in range(8):
+    plotter.subplot(*divmod(place, 4))
+    plotter.add_silhouette(below, color="black", line_width=2)
 plotter.show()

@@ -57,10 +57,11 @@ def turned(degrees):
 
 
 panels = [
-    render.Panel(turned(angle), "rgb", f"turned by {angle}°") for angle in (0, 20, 45, 70, 90)
+    render.Panel(turned(angle), "rgb", f"turned by {angle}°{name}")
+    for angle, name in ((0, ": graph of Re w"), (20, ""), (45, ""), (70, ""), (90, ": the inverse"))
 ]
 meshes = pv.MultiBlock([block for panel in panels for block in panel.mesh])
-camera = render.camera_on(meshes, (0.5, -1, 0.7), aspect=0.9, zoom=0.86)
+camera = render.camera_on(meshes, (0.5, -1, 0.7), aspect=1.0, zoom=0.92)
 # A key of the phase, which faces the eye.
 axis = -np.array(camera.direction)
 ring = pv.Disc(inner=0.6, outer=1.1, normal=axis, r_res=8, c_res=180)
@@ -69,13 +70,13 @@ up = np.cross(axis, right)
 phase = np.arctan2(ring.points @ up, ring.points @ right)
 ring["rgb"] = wheel(phase / (2 * np.pi) + 0.5)[:, :3]
 panels.append(render.Panel(ring, "rgb", "phase of w"))
-look = {"rows": 2, "size": (1650, 1240), "background": "white", "line_width": 1.5}
+look = {"rows": 2, "size": (1650, 1160), "background": "white", "line_width": 1.5}
 plotter = render.make_plotter(panels, camera=camera, **look)
 places = [1.5 * (np.cos(turn) * right + np.sin(turn) * up) for turn in np.arange(4) * np.pi / 2]
 words = {
     "shape": None,
     "show_points": False,
-    "font_size": 26,
+    "font_size": 30,
     "bold": False,
     "always_visible": True,
 }

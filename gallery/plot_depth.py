@@ -20,7 +20,7 @@ x, y, z = np.cos(21 * turn), 0.5 * np.sin(21 * turn), 0.87 * np.sin(21 * turn)
 thread = np.stack([x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn), z])
 # Threads that climb lie over those that descend.
 thread = pv.MultipleLines((thread * (1 + 0.03 * x)).T)
-camera = render.camera_on(thread, (1, 0.5, 0.6), aspect=0.9, zoom=0.92)
+camera = render.camera_on(thread, (1, 0.5, 0.6), aspect=0.95, zoom=0.94)
 scene = Scene(
     lights=Light(direction=(1, 0.9, 0.8)),
     view=View.from_camera(camera),
@@ -33,29 +33,29 @@ for title, cue in (("without depth cue", None), ("with depth cue", fog)):
     lit = vizlight.illuminate(thread, scene.replace(depth_cue=cue))
     panels.append(render.Panel(lit, "rgb", title))
 look = {"camera": camera, "background": dark, "line_diameter": 0.03, "halo": 0.5}
-plotter = render.make_plotter(panels, size=(1400, 780), **look)
+plotter = render.make_plotter(panels, size=(1400, 740), **look)
 plotter.show()
 
 # %%
-# Ambient light reaches all points alike: :math:`I_a` is that of the scene, and :math:`k_a` the
-# share of it that the material reflects.
+# Ambient light reaches all points alike: I is that of the scene, and k the share of it that the
+# material reflects.
 
 ball = pv.Sphere(radius=1, theta_resolution=300, phi_resolution=300)
 lamp, view = Light(direction=(-0.7, 0.8, 0.9)), View(direction=(0, 0, 1))
 balls, labels = pv.MultiBlock(), {}
 for column, ka in enumerate((0.3, 0.45, 0.6)):
-    labels[2.3 * column, 1.35, 1] = f"$k_a = {ka}$"
+    labels[2.3 * column, 1.42, 1] = f"share reflected\nk = {ka}"
     for row, intensity in enumerate((1.0, 0.7, 0.4)):
-        labels[-1.8, -2.3 * row, 1] = f"$I_a = {intensity}$"
-        red = Material(ambient=ka, diffuse=0.4, specular=0.4, color="#ff5a46")
+        labels[-1.95, -2.3 * row, 1] = f"ambient light\nI = {intensity}"
+        red = Material(ambient=ka, diffuse=0.4, specular=0.4, color="#ff7a58")
         scene = Scene(lights=lamp, view=view, ambient_intensity=intensity, material=red)
         balls.append(vizlight.illuminate(ball, scene).translate((2.3 * column, -2.3 * row, 0)))
-camera = render.camera_on((-2.6, 5.7, -5.7, 1.8, -1, 1), (0, 0, 1), parallel=True, zoom=1.4)
+camera = render.camera_on((-2.9, 5.5, -5.7, 1.9, -1, 1), (0, 0, 1), parallel=True, zoom=1.42)
 look = {"camera": camera, "background": "white", "anti_aliasing": "ssaa"}
 plotter = render.make_plotter(render.Panel(balls, "rgb"), size=(1130, 1000), **look)
 plotter.add_point_labels(
-    np.array([*labels]), [*labels.values()], always_visible=True, font_size=30, shape=None,
-    text_color="black", show_points=False, justification_horizontal="center",
+    np.array([*labels]), [*labels.values()], always_visible=True, font_size=28, shape=None,
+    bold=False, text_color="black", show_points=False, justification_horizontal="center",
     justification_vertical="center",
 )  # fmt: skip
 plotter.show()

@@ -17,9 +17,10 @@ from vizlight import Light, Material, Scene, View, render
 
 dog = vizlight.load_example("dog.vtp").compute_normals(split_vertices=False)
 x, y, z = np.asarray(dog.points).T
-# No hair grows in the mouth and on the lids of the eyes.
+# No hair grows in the mouth, on the nose and on the lids of the eyes.
 mouth = (x > 0.36) & (z < 0.632) & (z > 0.708 - 0.25 * x) & (np.abs(y) < 0.026)
-bare = mouth | (np.hypot(np.hypot(x - 0.363, np.abs(y) - 0.024), z - 0.7046) < 0.016)
+nose = np.linalg.norm(np.subtract(dog.points, (0.467, 0, 0.669)) / (1, 1.2, 1), axis=1) < 0.02
+bare = mouth | nose | (np.hypot(np.hypot(x - 0.363, np.abs(y) - 0.024), z - 0.7046) < 0.016)
 long = np.interp(x, [-0.7, -0.4, -0.2, 0.15, 0.25, 0.36], [0.06, 0.045, 0.03, 0.045, 0.025, 0.012])
 dog["length"] = np.where(bare, 0, long * np.interp(z, [0, 0.45, 0.7, 0.74], [0.3, 1, 1, 0.5]))
 # Hair lies back, down along the legs, and up on the ears.
@@ -36,7 +37,8 @@ x, y, z = np.asarray(coat["fibres"].points).T
 dark = np.interp(x, [0.36, 0.43], [1, 0.5]) * np.interp(z, [0.68, 0.78], [1, 0.5])
 dark = dark[:, np.newaxis] * np.random.default_rng(0).uniform(0.7, 1.15, (400_000, 1)).repeat(7, 0)
 coat["fibres"]["rgb"] = coat["fibres"]["rgb"] * dark
-coat["skin"]["rgb"] = coat["skin"]["rgb"] * np.where(mouth[:, np.newaxis], [0.4, 0.25, 0.28], 0.6)
+skin = np.select([mouth[:, np.newaxis], nose[:, np.newaxis]], [[0.32, 0.19, 0.21], [0.1] * 3], 0.6)
+coat["skin"]["rgb"] = coat["skin"]["rgb"] * skin
 coat.append(vizlight.illuminate(eyes, scene.replace(material=Material(specular=1, color="k"))))
 look = {"size": (1300, 1000), "background": "#14181d", "scalars": "rgb"}
 plotter = render.make_plotter(coat, camera=camera, **look)

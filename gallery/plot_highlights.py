@@ -21,7 +21,7 @@ from vizlight.model import highlights
 def shiny(mesh, degrees, model, power):
     """Return a mesh with the highlight of a lamp so far from the eye, which is above it."""
     angle = np.radians(degrees)
-    paint = Material(ambient=0.25, diffuse=0.3, specular=0.45, shininess=power, color="#5a94e6")
+    paint = Material(ambient=0.4, diffuse=0.25, specular=0.5, shininess=power, color="#6aa2f0")
     lamp = Light(direction=(-np.sin(angle), 0, np.cos(angle)))
     scene = Scene(lights=lamp, view=View(direction=(0, 0, 1)), material=paint)
     return vizlight.illuminate(mesh, scene, model=model)
@@ -31,11 +31,11 @@ def show(solids, bounds, labels, size):
     """Draw solids from above, with labels centred at their places."""
     camera = render.camera_on(bounds, (0, 0, 1), parallel=True)
     camera.parallel_scale = (bounds[3] - bounds[2]) / 2
-    look = {"background": "#3a424c", "light": "points", "size": size, "anti_aliasing": "ssaa"}
+    look = {"background": "#14181d", "light": "points", "size": size, "anti_aliasing": "ssaa"}
     plotter = render.make_plotter(render.Panel(solids, "rgb"), camera=camera, **look)
     plotter.add_point_labels(
         np.array([(x, y, 1) for x, y, _ in labels]), [text for *_, text in labels],
-        always_visible=True, text_color="white", font_size=26, bold=False, shape=None,
+        always_visible=True, text_color="white", font_size=28, bold=False, shape=None,
         show_points=False, justification_horizontal="center", justification_vertical="center",
     )  # fmt: skip
     plotter.show()
@@ -47,7 +47,7 @@ ball.point_data.active_normals_name = "Normals"
 rows = {"Phong, power 8": None, **{f"Blinn, power {8 * f}": f for f in (1, 2, 4, 6)}}
 rows["Blinn, 32 cos(a/2)"] = "rule"
 angles = (0, 45, 90, 135, 160)
-balls, labels = pv.MultiBlock(), [(-2.6, 1.45, "from lamp to eye: a")]
+balls, labels = pv.MultiBlock(), [(-2.6, 1.45, "lamp to eye, a =")]
 labels += [(2.2 * column, 1.45, f"{degrees}°") for column, degrees in enumerate(angles)]
 for row, (name, factor) in enumerate(rows.items()):
     labels.append((-2.6, -2.2 * row, name))
@@ -55,7 +55,7 @@ for row, (name, factor) in enumerate(rows.items()):
         rule = highlights.simple_factor(np.radians(degrees)) if factor == "rule" else factor or 1.0
         lit = shiny(ball, degrees, "blinn" if factor else "phong", 8 * rule)
         balls.append(lit.translate((2.2 * column, -2.2 * row, 0)))
-show(balls, (-4.5, 10.1, -12.3, 2.1, 0, 0), labels, (1220, 1200))
+show(balls, (-4.6, 10.0, -12.2, 2.0, 0, 0), labels, (1240, 1205))
 
 # %%
 # Three shapes under a lamp 45 degrees from the eye, by powers beside the rows: both models look
@@ -94,12 +94,12 @@ error = 255 * (np.maximum(mirror, 0) ** 10 - np.maximum(half, 0) ** 40)
 figure, axes = plt.subplots(figsize=(9, 5), layout="constrained")
 drawn = axes.contourf(*np.degrees([theta, phi]), error, levels=np.arange(8, 65, 8), cmap="Reds")
 bar = figure.colorbar(drawn, shrink=0.8, aspect=16)
-bar.set_label("difference, 1/255 of white", fontsize=15, labelpad=10)
-axes.set_xlabel("theta of the normal, degrees", fontsize=15)
-axes.set_ylabel("phi of the normal, degrees", fontsize=15)
+bar.set_label("difference, 255 is white", fontsize=15, labelpad=10)
+axes.set_xlabel(r"$\theta$ of the normal, degrees; 90: in the plane of lamp and eye", fontsize=15)
+axes.set_ylabel(r"$\varphi$, degrees; 0: lamp, 90: eye", fontsize=15)
 axes.set(aspect="equal", xlim=(54, 126), ylim=(24, 66))
 axes.set(xticks=range(60, 121, 15), yticks=range(30, 61, 15))
-axes.set_title("Phong, power 10, less Blinn, power 40: lamp 90° from the eye", fontsize=15)
+axes.set_title("Phong's highlight of power 10 less Blinn's of 40", fontsize=15)
 for each in (axes, bar.ax):
     each.tick_params(labelsize=13)
 plt.show()

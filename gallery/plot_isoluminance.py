@@ -15,7 +15,7 @@ from vizlight import Block, Frustum, Light, Material, Scene, Sphere, View, rende
 
 far = Light(direction=(0.8, -1, 1.1))
 dull = Scene(lights=far, material=Material(ambient=0.1, diffuse=0.9, specular=0))
-camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.5, -1, 0.6), zoom=1.3)
+camera = render.camera_on((-1, 1, -1, 1, -1, 1), (0.5, -1, 0.6), zoom=1.36)
 shiny = Scene(
     lights=far,
     view=View.from_camera(camera),
@@ -49,13 +49,16 @@ plotter = render.make_plotter(
     size=(1900, 960),
     cmap="bone",
     bar="luminance",
+    anti_aliasing="ssaa",
 )
 for number, ((solid, _), found) in enumerate(zip(shapes.values(), drawn, strict=True)):
     plotter.subplot(*divmod(number, 4))
-    plotter.add_silhouette(vizlight.to_polydata(solid).clean(), color="black", feature_angle=35)
+    plotter.add_silhouette(
+        vizlight.to_polydata(solid).clean(), color="black", feature_angle=35, line_width=4
+    )
     if not found["contours"].n_points:
         continue  # each face of the block is one band
-    lines = plotter.add_mesh(found["contours"], color="black", line_width=1.5)
+    lines = plotter.add_mesh(found["contours"], color="black", line_width=2.5)
     # The lines lie in the bands: shift them slightly toward the viewer.
     lines.mapper.SetResolveCoincidentTopologyToPolygonOffset()
     lines.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(-4, -4)

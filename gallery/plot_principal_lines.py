@@ -45,12 +45,12 @@ surface["bend"] = np.linalg.eigh(across @ second @ across)[1][:, :, 2]
 # %%
 # The lines are ribbons of a width in the unit of the mesh, so nearer ones are wider.
 
-camera = render.camera_on(surface, (1, -0.75, 0.55), aspect=0.95, zoom=0.96)
+camera = render.camera_on(surface, (1, -0.75, 0.55), aspect=0.97, zoom=0.96)
 scene = Scene(
-    lights=[Light(direction=(0.1, -0.75, 1)), Light(direction=(1, 0.2, 0.3), intensity=0.3)],
+    lights=[Light(direction=(0.1, -0.75, 1)), Light(direction=(1, 0.2, 0.3), intensity=0.5)],
     view=View.from_camera(camera),
     material=Material(
-        ambient=0.3, diffuse=0.7, specular=0.5, shininess=30, color=(0.95, 0.72, 0.38)
+        ambient=0.35, diffuse=0.65, specular=0.5, shininess=30, color=(0.95, 0.72, 0.38)
     ),
 )
 before = vizlight.illuminate(surface, scene)
@@ -59,13 +59,13 @@ lines = vizlight.streamlines(
 )
 # Their square ends stay on the surface.
 lines = lines.clip_surface(ball.scale(0.985))
-blue = Material(ambient=0.3, diffuse=0.7, specular=0, color=(0.16, 0.26, 0.52))
+blue = Material(ambient=0.45, diffuse=0.55, specular=0, color=(0.16, 0.26, 0.52))
 after = pv.MultiBlock([vizlight.illuminate(surface, scene.replace(material=blue)), lines])
 
 panels = [
     render.Panel(before, "rgb", "the surface, lit by its normals"),
     render.Panel(after, "rgb", "its lines of curvature, lit by direction"),
 ]
-look = {"size": (1700, 900), "background": "#14181d", "line_diameter": 0.036, "halo": "#1c2f60"}
+look = {"size": (1700, 880), "background": "#14181d", "line_diameter": 0.036, "halo": "#1c2f60"}
 plotter = render.make_plotter(panels, camera=camera, **look)
 plotter.show()

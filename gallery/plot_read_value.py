@@ -18,10 +18,18 @@ from vizlight import Material, presets
 
 surface = vizlight.load_example().contour([600], scalars="Temp").subdivide(2, "loop")
 surface["speed"] = np.linalg.norm(surface["V"], axis=1)
-scene = presets.value().replace(material=Material(ambient=0.65, diffuse=0.35, specular=0))
+scene = presets.value().replace(material=Material(ambient=0.7, diffuse=0.3, specular=0))
 words = {"position": "upper_edge", "color": "black", "font_size": 14}
-bar = {"color": "black", "n_labels": 3, "fmt": "%.0f", "width": 0.6}
-bar |= {"position_x": 0.2, "position_y": 0.05}
+bar = {
+    "color": "black",
+    "n_labels": 3,
+    "fmt": "%.0f",
+    "width": 0.6,
+    "height": 0.12,
+    "title_font_size": 26,
+    "label_font_size": 24,
+}
+bar |= {"position_x": 0.2, "position_y": 0.02}
 title = "speed, unit of the simulation\n"
 
 plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=(1600, 760), border=False)
@@ -37,7 +45,7 @@ plotter.vizlight.add_mesh(
 plotter.add_text("\nvizlight: a map of one lightness", **words)
 plotter.link_views()
 plotter.view_vector((1, 0.5, 0.6), (0, 0, 1))
-plotter.camera.zoom(1.48)
+plotter.camera.zoom(1.44)
 plotter.camera.SetWindowCenter(0, -0.25)
 plotter.enable_anti_aliasing("msaa")
 plotter.show(auto_close=False)

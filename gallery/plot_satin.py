@@ -21,11 +21,11 @@ ball["Normals"] = normals
 ball.point_data.active_normals_name = "Normals"
 ball["satin"] = np.array([0, 0, 1], dtype=np.float32) - normals[:, 2:] * normals
 
-camera = render.camera_on(ball, (0.2, -1, 0.35), aspect=1, zoom=0.86)
+camera = render.camera_on(ball, (0.2, -1, 0.35), aspect=1, zoom=0.9)
 scene = Scene(
     lights=Light(direction=(1, -1, 0.8)),
     view=View.from_camera(camera),
-    material=Material(ambient=0.1, diffuse=0.5, specular=1.0, color=(1.0, 0.25, 0.30)),
+    material=Material(ambient=0.15, diffuse=0.7, specular=0.9, color=(1.0, 0.3, 0.33)),
 )
 # Threads that start at even steps around the equator keep even steps on every circle of latitude.
 turn = np.linspace(0, 2 * np.pi, 120, endpoint=False)
@@ -36,13 +36,13 @@ dark["rgb"] = np.full((dark.n_points, 3), 0.02)
 panels["curves"] = pv.MultiBlock([panels["curves"], dark])
 titles = {
     "curves": "threads, each lit as a line", "surface": "the ball, lit by its normals",
-    "field": "lit by the threads' direction", "conditioned": "direction, shadowed by the ball",
+    "field": "the ball, lit by its threads", "conditioned": "threads in the shadow of the ball",
 }  # fmt: skip
 plotter = render.make_plotter(
     [render.Panel(panels[name], "rgb", title) for name, title in titles.items()],
     camera=camera,
     rows=2,
-    size=(1400, 1400),
+    size=(1400, 1380),
     background="#14181d",
     line_diameter=0.007,
     halo=0.5,

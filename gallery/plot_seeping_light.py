@@ -22,7 +22,7 @@ eyes = [pv.Sphere(radius=0.012, center=(0.363, side * 0.024, 0.7046)) for side i
 head = (0.12, 0.47, -0.1, 0.1, 0.44, 0.81)
 camera = render.camera_on(head, (1.0, -0.85, 0.12), aspect=0.9, zoom=1.24)
 behind = Light(direction=(-0.9, 0.75, 0.35), intensity=0.9)
-beside = Light(direction=(0.2, -1, 0.9), intensity=0.3)
+beside = Light(direction=(0.2, -1, 0.9), intensity=0.4)
 panels = []
 for title, depth in (
     ("cosine: no light passes", 0.0), ("light passes, d = 0.002", 0.002),
@@ -30,7 +30,7 @@ for title, depth in (
 ):  # fmt: skip
     scene = Scene(
         lights=[behind, beside],
-        material=Material(ambient=0.04, diffuse=0.9, specular=0.0, color=(1.0, 0.5, 0.22)),
+        material=Material(ambient=0.06, diffuse=0.9, specular=0.0, color=(1.0, 0.5, 0.22)),
     )
     lit = vizlight.relief_shadow(dog, scene, depth=depth, lit=True)
     lit["rgb"] = lit["rgb"] ** 0.65
@@ -41,7 +41,7 @@ for title, depth in (
     both = pv.MultiBlock([lit, *(vizlight.illuminate(eye, dark) for eye in eyes)])
     panels.append(render.Panel(both, "rgb", title))
 
-plotter = render.make_plotter(panels, camera=camera, size=(1800, 800), background="#2c343e")
+plotter = render.make_plotter(panels, camera=camera, size=(1800, 780), background="#14181d")
 plotter.show()
 
 # %%

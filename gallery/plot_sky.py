@@ -37,13 +37,15 @@ shown = {
     "coral": (coral.compute_normals(auto_orient_normals=True), (1, 0.6, 0.5)),
     "part": (vizlight.to_polydata(part), (-0.4, -1, 1)),
 }
-size = {"window_size": (2200, 1020), "shape": (2, 5), "col_weights": (1, 1, 1, 1, 0.4)}
+size = {"window_size": (2200, 1000), "shape": (2, 5), "col_weights": (1, 1, 1, 1, 0.34)}
 size["groups"] = [((0, 1), 4)]
 plotter = pv.Plotter(off_screen=True, border=False, **size)
 plotter.set_background("#14181d", all_renderers=True)
-words = {"position": "upper_edge", "color": "white", "font_size": 13}
+words = {"position": "upper_edge", "color": "white", "font_size": 12}
+zooms = {"terrain": 1.04, "cortex": 0.92, "coral": 0.79, "part": 0.95}
 for column, (name, (mesh, toward)) in enumerate(shown.items()):
-    camera = render.camera_on(mesh, toward, aspect=1, zoom=0.86 if name == "terrain" else 0.76)
+    camera = render.camera_on(mesh, toward, aspect=1, zoom=zooms[name])
+    camera.SetWindowCenter(0, 0.1)
     # Points deep in folds see nothing of the sky: a warning says how many.
     lit = vizlight.sky(mesh, error=0.02).vizlight.illuminate(scene, occlusion="sky")
     plotter.subplot(0, column)
@@ -54,12 +56,12 @@ for column, (name, (mesh, toward)) in enumerate(shown.items()):
     plain = Scene.from_plotter(plotter, actor=actor)
     plotter.enable_ssao(radius=0.1 * mesh.length, bias=0.003 * mesh.length, kernel_size=128)
     plotter.enable_anti_aliasing("ssaa")
-    plotter.add_text(f"\n{name}: PyVista, SSAO", **words)
+    plotter.add_text(f"\n{name}, PyVista with SSAO", **words)
     plotter.camera = camera
     plotter.subplot(1, column)
     plotter.vizlight.add_mesh(lit)
     plotter.enable_anti_aliasing("ssaa")
-    plotter.add_text(f"\n{name}: vizlight, sky", **words)
+    plotter.add_text(f"\n{name}, vizlight with sky", **words)
     plotter.camera = camera
     for what, (own, light) in {
         "plain": (mesh, plain), "no sky": (mesh, scene), "sky": (lit, scene),

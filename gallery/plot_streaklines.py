@@ -36,7 +36,8 @@ for time in times:
     steps.append(step)
 
 seeds = np.linspace((0.05, -0.32, 0.05), (0.05, 0.32, 0.05), 26)
-camera = render.camera_on((0.4, 5.2, -1, 1, 0, 0.1), (0, -0.3, 1), aspect=2.6, zoom=2.75)
+camera = render.camera_on((0.4, 5.2, -1, 1, 0, 0.1), (0, -0.3, 1), aspect=2.27, zoom=2.22)
+camera.SetWindowCenter(0, -0.2)
 scene = Scene(
     lights=Light(direction=(-0.7, 0.6, 0.6)),
     view=View.from_camera(camera),
@@ -47,20 +48,25 @@ frames = vizlight.pathlines(
     model="cylinder", step=0.6, tail=4,
 )  # fmt: skip
 
-plotter = pv.Plotter(off_screen=True, window_size=(1000, 380))
+plotter = pv.Plotter(off_screen=True, window_size=(1000, 440))
 plotter.background_color = "#14181d"
 plotter.enable_anti_aliasing("ssaa")
 plotter.camera = camera
-tints = ["#ff6a4d", "#ffc27a", "#f7f0d0", "#9ad4ee", "#5a8fe8", "#14181d"]
+tints = ["#ff6a4d", "#ffc27a", "#f7f0d0", "#9ad4ee", "#5a8fe8", "#2c4474"]
 aged = {"cmap": LinearSegmentedColormap.from_list("age", tints), "clim": (0, 4)}
-plotter.vizlight.add_key(scene, question="value", title="Age of the smoke, s", lying=True, **aged)
 plotter.open_gif(Path(mkdtemp()) / "smoke.gif", fps=8)
+bar = {"n_labels": 5, "fmt": "%.0f", "color": "white", "width": 0.5, "height": 0.16}
+bar |= {"position_x": 0.25, "position_y": 0.02, "title_font_size": 20, "label_font_size": 18}
 for number, lines in enumerate(frames):
     lines["age"] = lines.field_data["TimeValue"][0] - lines["Time"]
     lit = vizlight.tint(lines, "age", **aged)
-    plotter.add_mesh(
+    actor = plotter.add_mesh(
         lit, scalars="rgb", rgb=True, lighting=False, line_width=3.2, name="smoke", render=False
     )
+    if not number:
+        table = pv.LookupTable(aged["cmap"], scalar_range=aged["clim"])
+        actor.mapper.lookup_table, actor.mapper.scalar_range = table, table.scalar_range
+        plotter.add_scalar_bar("age of the smoke, s\n", mapper=actor.mapper, **bar)
     if number > 89 and number % 3 == 0:  # a period of the vortices
         plotter.write_frame()
 plotter.show()

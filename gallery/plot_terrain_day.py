@@ -38,17 +38,17 @@ plotter = render.make_plotter(
     [render.Panel(day, name, name) for name in names],
     camera=render.camera_on(terrain, (0, 0, 1), parallel=True, aspect=0.9, zoom=0.88),
     rows=2,
-    size=(1440, 1000),
+    size=(1340, 1000),
     cmap="cividis",
     background="white",
-    bar="sunlight",
+    bar="share\nof full\nsunlight",
 )
 east, south = terrain.bounds[1], terrain.bounds[2]
 scale = pv.Box((east - 3000, east, south - 500, south - 300, 0, 1))
 plotter.subplot(0, 0)
 plotter.add_mesh(scale, color="black", lighting=False)
 plotter.add_point_labels(
-    [(east - 4700, south - 400, 0)], ["3 km"], shape=None, show_points=False,
-    text_color="black", font_size=20, justification_vertical="center", always_visible=True,
+    [(east - 4700, south - 400, 0)], ["3 km"], shape=None, show_points=False, bold=False,
+    text_color="black", font_size=24, justification_vertical="center", always_visible=True,
 )  # fmt: skip
 plotter.show()

@@ -32,8 +32,8 @@ for degrees in range(0, 180, 30):
     turn = ("xw", np.radians(degrees))
     lit = vizlight.project(fibres, scene=scene, rotation=turn, distance=1.3)
     lit = vizlight.tint(lit, "torus", cmap=["#74adfe", "#f689b3", "#cba656"])
-    panels.append(render.Panel(lit, "rgb", f"turned by {degrees}°"))
-camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), aspect=1, zoom=1.42)
-look = {"rows": 2, "size": (1320, 940), "background": "#14181d", "line_diameter": 0.033}
+    panels.append(render.Panel(lit, "rgb", f"turned by {degrees}° in 4-space"))
+camera = render.camera_on((-1.7, 1.7, -1.7, 1.7, -1.5, 1.5), (0.3, -1, 0.6), aspect=1, zoom=1.46)
+look = {"rows": 2, "size": (1320, 920), "background": "#14181d", "line_diameter": 0.033}
 plotter = render.make_plotter(panels, camera=camera, halo=0.5, **look)
 plotter.show()

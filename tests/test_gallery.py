@@ -365,7 +365,8 @@ def test_views_of_a_scene_turn_together(chromium):
         page.locator("label.sd-tab-label", has_text="Interactive scene").first.click()
         scene.scroll_into_view_if_needed()
         frames = [f.element_handle().content_frame() for f in scene.locator("iframe").all()]
-        titles = [*(f"turned by {angle}°" for angle in (0, 20, 45, 70, 90)), "phase of w"]
+        titles = ["turned by 0°: graph of Re w", *(f"turned by {a}°" for a in (20, 45, 70))]
+        titles += ["turned by 90°: the inverse", "phase of w"]
         assert len(frames) == len(titles)
         for frame in frames:
             frame.frame_element().scroll_into_view_if_needed()

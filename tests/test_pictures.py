@@ -72,22 +72,6 @@ def ambient():
     return grid(lit, 3, scalars="rgb")
 
 
-def attenuation():
-    lit = [
-        vizlight.illuminate(
-            ball(),
-            Scene(
-                lights=Light(position=(1.0 - 2.2 * column, 1.5, 1.8), attenuation=law),
-                view=View(direction=(0, 0, 1)),
-                material=Material(ambient=0.05, diffuse=0.85, specular=0.3),
-            ),
-        )
-        for law in ((1, 0.1, 0), (0.2, 0.1, 0.05), (0, 0, 0.5))
-        for column in range(4)
-    ]
-    return grid(lit, 4)
-
-
 def highlights_of_two_laws():
     """Fisher and Woo's figure 2, in part: R.E, and N.H to 4 and 4 cos(beta) times the power."""
     lit = []
@@ -241,7 +225,7 @@ def seeping_light():
 
 
 SCENES = [
-    ambient, attenuation, highlights_of_two_laws, streamlines, depth_cue, exact_line_light,
+    ambient, highlights_of_two_laws, streamlines, depth_cue, exact_line_light,
     confined_streamlines, fibres, satin, fur, turning, complex_curve, field_in_4_space, terrain,
     seeping_light,
 ]  # fmt: skip

@@ -47,11 +47,11 @@ QUESTIONS = {
     ),
     "slope": Question(
         "Slope", "Bright is across your view, dark is along it.",
-        ("across", "toward you"), "bar", of_tangents=True,
+        ("across view", "along view"), "bar", of_tangents=True,
     ),
     "heading": Question(
         "Heading", "Hue tells the direction and which end is near.",
-        ("near end of a line",), "hemisphere", of_tangents=True, by_hue=True,
+        ("where the near end points",), "hemisphere", of_tangents=True, by_hue=True,
     ),
     "shape": Question(
         "Shape", "Hue and lightness are the normal, as on the ball of the key.",

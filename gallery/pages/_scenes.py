@@ -35,13 +35,13 @@ LINK = (Path(__file__).parent / "link.js").read_text("utf-8")
 #: Sections of the gallery, their scripts, and what a reader who cannot see the pictures is told.
 SECTIONS = {
     "Which way does it run?": {
-        "plot_winds": "Globe of winds in hues of their direction, with lines, coasts and a disc",
+        "plot_winds": "Globe of winds in hues of their direction, with arrows, coasts and a disc",
         "plot_read_direction": "Six globes: plain, arrows, LIC, lines, white light, and hues",
         "plot_principal_lines": "Gyroid, plain and engraved by lines of its curvature",
         "plot_satin": "Satin ball lit by its threads, with a highlight across them",
     },
     "How steep is it, and which end is near?": {
-        "plot_read_slope": "Arch of nerve fibres: tan tubes, and white to dark by slope",
+        "plot_read_slope": "Arch of nerve fibres: tan tubes, and pale to brown by slope",
         "plot_read_heading": "Arch of nerve fibres in hues of the near end, with their key",
         "plot_depth": "Thread wound on a ball, twice: bright all over, and fading with depth",
         "plot_fur": "Head and shoulders of a golden dog whose hair lies back",
@@ -85,22 +85,22 @@ FIRST = (
 #: thumbnails show the whole.
 PARTS = {
     "plot_bas_relief": (0.03, 0.05, 0.47, 0.45),
-    "plot_codimension": (0.0, 0.6, 0.5, 1.0),
+    "plot_codimension": (0.0, 0.58, 0.5, 1.0),
     "plot_complex_curve": (0.67, 0.03, 1.0, 0.47),
-    "plot_depth": (0.5, 0.08, 1.0, 0.92),
+    "plot_depth": (0.5, 0.09, 1.0, 0.96),
     "plot_highlights": (0.23, 0.06, 0.99, 0.37),
     "plot_isoluminance": (0.24, 0.56, 0.46, 1.0),
-    "plot_principal_lines": (0.5, 0.07, 1.0, 0.93),
-    "plot_read_direction": (0.61, 0.54, 0.86, 0.96),
+    "plot_principal_lines": (0.5, 0.07, 1.0, 1.0),
+    "plot_read_direction": (0.6, 0.575, 0.87, 0.975),
     "plot_read_heading": (0.02, 0.06, 0.8, 0.92),
-    "plot_read_shape": (0.45, 0.08, 0.88, 0.92),
-    "plot_read_slope": (0.435, 0.1, 0.87, 0.9),
-    "plot_read_value": (0.5, 0.06, 1.0, 0.82),
-    "plot_satin": (0.5, 0.53, 1.0, 0.97),
+    "plot_read_shape": (0.44, 0.09, 0.88, 0.92),
+    "plot_read_slope": (0.42, 0.11, 0.85, 0.94),
+    "plot_read_value": (0.5, 0.1, 1.0, 0.82),
+    "plot_satin": (0.5, 0.54, 1.0, 0.99),
     "plot_seeping_light": (0.67, 0.06, 1.0, 0.8),
-    "plot_sky": (0.47, 0.55, 0.68, 0.97),
+    "plot_sky": (0.46, 0.58, 0.68, 0.98),
     "plot_turning": (0.68, 0.55, 1.0, 1.0),
-    "plot_terrain_day": (0.64, 0.04, 0.88, 0.46),
+    "plot_terrain_day": (0.61, 0.05, 0.89, 0.48),
 }
 
 #: Width of the thumbnails of movies in pixels.

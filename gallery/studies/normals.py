@@ -283,5 +283,6 @@ STUDY = Study(
         for n in (NODES[:2] if quick else NODES)
     ],
     axes=("parameter", "error"),
-    curve=lambda row: Curve(*row.way.rsplit(", ", 1)),
+    joined=False,
+    curve=lambda row: Curve(row.way.rsplit(", ", 1)[1]),
 )

@@ -98,6 +98,10 @@ def test_words_of_a_key_take_few_lines():
     # Of a picture of 1200 by 800 pixels.
     key.fit(800, margins.LETTERS * 800, 120, 0, alone=True)
     assert key._lines == ["the way", "it faces"]
+    # In a narrow column no word is broken: its letters become smaller.
+    key = margins.MarginKey(presets.key(presets.direction()), 0.15, (0, 0, 0), lying=False)
+    key.fit(1200, margins.LETTERS * 1200, 130, 0, alone=True)
+    assert " ".join(key._lines) == "direction on the screen"
 
 
 def test_words_of_a_bar_that_do_not_fit_are_left_out_evenly():

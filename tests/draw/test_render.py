@@ -279,15 +279,6 @@ def test_picture_of_the_flow(verify_image_cache):
     render.make_plotter(panels, camera=camera, **options).show()
 
 
-def test_picture_of_a_coloured_ball(verify_image_cache):
-    # Seen: light 5 % too bright gives 150; a missing term or channel thousands. Other
-    # anti-aliasing of the outline gives 117.
-    verify_image_cache.error_value = verify_image_cache.warning_value = 130.0
-    lit, camera = ball(color=(1.0, 0.25, 0.3), diffuse=0.6)
-    panel = render.Panel(lit, "rgb")
-    render.make_plotter(panel, camera=camera, size=(300, 300)).show()
-
-
 @pytest.mark.parametrize("anti_aliasing", ["ssaa", "msaa", None])
 @pytest.mark.parametrize("width", [2, 5, 11])
 def test_lines_are_as_wide_as_asked_in_pixels_of_the_picture(width, anti_aliasing, drawn):
@@ -390,6 +381,8 @@ def test_what_draws_is_found_out_once_for_each_setting(monkeypatch, tmp_path):
 def test_a_bar_beside_several_panels_takes_the_width_of_none():
     lit = vizlight.illuminate(pv.Sphere(), vizlight.Scene())
     plotter = render.make_plotter([lit, lit, lit, lit], rows=2, bar="luminance", size=(500, 300))
+    # Nine letters of its title have room in a column of 65 pixels.
+    assert plotter.scalar_bars["luminance\n"].GetLabelTextProperty().GetFontSize() == 11
     views = [renderer.GetViewport() for renderer in plotter.renderers]
     bars = [
         any(prop.IsA("vtkScalarBarActor") for prop in renderer.actors.values())
@@ -398,3 +391,13 @@ def test_a_bar_beside_several_panels_takes_the_width_of_none():
     widths = np.array([right - left for left, _, right, _ in views])
     assert np.ptp(widths[np.logical_not(bars)]) < 1e-9
     assert widths[bars] == pytest.approx(render.BAR_COLUMN * widths[0])
+
+
+def test_what_is_drawn_stands_in_the_middle_below_a_title(drawn):
+    lit, camera = ball()
+    tops = []
+    for title in ("", "A\nB"):
+        seen = drawn(render.Panel(lit, title=title), camera=camera, size=(1000, 800))
+        tops.append(np.argmax((seen[:, 300:700] < 200).all(axis=2).sum(axis=1) > 50))
+    # Half of two lines of 1.3 times 40 pixels.
+    assert tops[1] - tops[0] == pytest.approx(52, abs=2)

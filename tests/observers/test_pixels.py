@@ -27,6 +27,7 @@ def test_a_pixel_shows_the_cell_that_its_ray_meets_first(parallel, offset):
     small.points = small.points.astype(np.float64)
     meshes = [ball, small]
     camera = camera_on(pv.MultiBlock(meshes), (1, 0.8, 1), parallel=parallel)
+    camera.SetWindowCenter(0.1, -0.2)  # as for a picture with a title
     found = seen(meshes, camera)
     pick = np.random.default_rng(0).permutation(len(found.part))[:200]
     sight = rays(camera, found.at[pick])

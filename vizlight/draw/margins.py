@@ -378,7 +378,7 @@ class MarginKey:
         head = "\n".join(filter(None, [self._head(alone=alone), self._below]))
         longest = max(map(len, head.split()), default=0)
         # Most words are narrower than their number of wide letters: one is not broken for a few.
-        columns = max(columns, min(longest, int(1.4 * columns)))
+        columns = max(columns, min(longest, 2 * columns))
         columns = len(head) if len(head) <= SHORT * columns else columns
         # Fewer lines of a little more letters, rather than a line of a short word.
         tries = [

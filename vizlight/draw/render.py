@@ -25,7 +25,7 @@ from vizlight.draw.cameras import Mesh, camera_on, common_bounds, over_shoulder
 from vizlight.draw.glsl import Stroke
 from vizlight.draw.keywords import array_of
 from vizlight.draw.margins import ink_on
-from vizlight.draw.scalar_bars import name_no_data
+from vizlight.draw.scalar_bars import LETTER, name_no_data
 from vizlight.draw.several_views import beside, inset, several_views
 from vizlight.filters.tint import RGB, unlit_colors
 from vizlight.mesh import records
@@ -148,10 +148,9 @@ def make_plotter(
         Diameter of lines in the unit of the mesh, in place of ``line_width``: nearer lines are
         wider. They are bands that face the eye, at least half a pixel wide.
     render_lines_as_tubes : bool, default: False
-        Whether lines wider than a pixel have, across their width, the light of the cylinder that
-        they stand for: its mean is the light of ``model="cylinder"``. Lines keep their own light
-        where it cannot be computed in each fragment, as with ``light="points"``, on a surface that
-        conditions it, or in a bundle.
+        Whether lines wider than a pixel have the light of a cylinder across their width: its mean
+        is that of ``model="cylinder"``. They keep their own light where it is not computed in each
+        fragment, as with ``light="points"``, on a surface that conditions it, or in a bundle.
     halo : bool, float or str, default: False
         Band of the colour of the background on each side of lines, which tells the line in front
         where two cross, as for ``plotter.vizlight.add_mesh``: its width in widths of the line, or
@@ -159,8 +158,7 @@ def make_plotter(
     anti_aliasing : {"auto", "ssaa", "msaa", "fxaa"} or None, default: "auto"
         Method of anti-aliasing: supersampling, multisampling, FXAA, or none. "auto" is
         supersampling for lines, which are then drawn narrower than a pixel, else multisampling,
-        which takes a third of the time. VTK before 9.7 draws several supersampled panels in one
-        place; with it they are multisampled.
+        which takes a third of the time. VTK before 9.7 multisamples several panels.
     backend : {"egl", "osmesa"}, optional
         OpenGL library; see :func:`choose_backend`.
     light : {"auto", "points"}
@@ -188,15 +186,16 @@ def make_plotter(
     _check.text("bar", bar, expected="a title")
     _check.choice("light", light, get_args(PictureLight))
     # A colour map of the light, or other limits, shows the numbers: no light in fragments then.
-    plain = cmap == "gray" and clim == (0.0, 1.0) and not bar
+    fragments = light == "auto" and cmap == "gray" and clim == (0.0, 1.0) and not bar
     pixels = pixels_of(size)
     rows = min(_check.integer("rows", rows, low=1), len(shown))
     columns = math.ceil(len(shown) / rows)
     line_width = _check.number("line_width", line_width, low=0.1, high=1000.0)
     if line_diameter is not None:
         line_diameter = _check.positive("line_diameter", line_diameter)
+    lines: Keywords = {"line_width": line_width, "line_diameter": line_diameter}
     tubes = _check.boolean("render_lines_as_tubes", render_lines_as_tubes)
-    halo = strokes.check_halo(halo)
+    lines |= {"render_lines_as_tubes": tubes, "halo": strokes.check_halo(halo)}
     meshes = pv.MultiBlock([block for panel in shown for block in all_blocks(panel.mesh)])
     back = pv.Color(_check.color("background", background) or backdrop(meshes))
     if camera is None:
@@ -213,6 +212,7 @@ def make_plotter(
             off_screen=True, window_size=pixels, border=False, shape=(rows, columns + beside),
             col_weights=weights, groups=groups,
         )  # fmt: skip
+    em = max(10, pixels[0] // columns // 50)  # half the height of letters, readable in print
     if anti_aliasing == "auto":
         anti_aliasing = "ssaa" if any(map(has_lines_only, meshes)) else "msaa"
     if anti_aliasing == "ssaa" and len(shown) > 1 and not SUPERSAMPLES_PARTS:
@@ -226,12 +226,8 @@ def make_plotter(
             else:  # PyVista's theme asks for several samples of a pixel all the same
                 plotter.render_window.SetMultiSamples(0)  # type: ignore[union-attr]
             # PyVista supersamples for FXAA too where the driver lacks that.
-            lines: Keywords = {"line_width": line_width, "line_diameter": line_diameter}
-            lines |= {"render_lines_as_tubes": tubes, "halo": halo}
-            lit = light == "auto" and plain
-            _draw(plotter, panel, cmap, clim, lines, camera, fragments=lit)
+            _draw(plotter, panel, cmap, clim, lines, camera, fragments=fragments)
             if panel.title:
-                em = max(10, pixels[0] // columns // 50)  # readable in a column of print
                 text = plotter.add_text(panel.title, position="upper_edge", font_size=em, color=ink)
                 # VTK sets it so near to the edge that letters touch it.
                 text.GetTextProperty().SetLineOffset(8)
@@ -239,22 +235,27 @@ def make_plotter(
             # A copy for each panel: the clipping planes fit what it shows, and the caller's camera
             # stays as it was.
             plotter.camera = camera.copy()  # type: ignore[no-untyped-call]
+            # What is drawn stands in the middle of the room below the title.
+            band = 2.6 * em * len(panel.title.splitlines()) * rows / pixels[1]
+            plotter.camera.SetWindowCenter(0, band)
             plotter.reset_camera_clipping_range()
         if key is not None:
             plotter.vizlight.show_key(key, size=KEY_SIZE, color=ink)
         if bar:
-            mapper = plotter.mapper
-            width, left = 0.1, 0.82
+            mapper, width, left, room = plotter.mapper, 0.1, 0.82, 0.3
             if beside:
                 plotter.subplot(0, columns)
                 plotter.background_color = back
-                width, left = 0.1 / BAR_COLUMN, 0.2
+                width, left, room = 0.1 / BAR_COLUMN, 0.3, 0.9
+            # Letters are as large as those of titles of panels, as far as there is room.
+            room *= plotter.renderer.GetSize()[0] / LETTER / max(map(len, bar.splitlines()))
+            letters = int(min(2 * em, room))
             scalar_bar = plotter.add_scalar_bar(  # type: ignore[call-arg]
-                title=bar, mapper=mapper, color=ink, n_labels=3, fmt="%.1f", vertical=True,
+                title=f"{bar}\n",  # with a gap between the title and the numbers
+                mapper=mapper, color=ink, n_labels=3, fmt="%.1f", vertical=True,
                 height=0.7, width=width, position_x=left, position_y=0.12,
+                title_font_size=letters, label_font_size=letters, unconstrained_font_size=True,
             )  # fmt: skip
-            # A gap between the title and the numbers.
-            scalar_bar.SetTitle(f"{bar}\n")
             if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
                 name_no_data(scalar_bar)
     except BaseException:

@@ -157,6 +157,8 @@ class Pixels(Columns):
         Number of the cell of that mesh.
     size : (int, int)
         Width and height of the picture.
+    center : (float, float)
+        Place of the middle of the picture from the axis of the view, as in ``at``.
     """
 
     row: Indices
@@ -164,14 +166,15 @@ class Pixels(Columns):
     part: Indices
     cell: Indices
     size: tuple[int, int]
+    center: tuple[float, float] = (0.0, 0.0)
 
     @property
     def at(self) -> Array:
-        """Places of the middles of the pixels, to the right and up, in halves of the height."""
+        """Places of the pixels from the axis of the view, right and up, in halves of the height."""
         width, height = self.size
         right = (2 * self.column + 1 - width) / height
         up = (height - 2 * self.row - 1) / height
-        return np.stack([right, up], axis=1)
+        return np.stack([right, up], axis=1) + self.center
 
 
 def visible(
@@ -256,7 +259,8 @@ def visible(
     from_below, column = np.nonzero(part[::-1] >= 0)
     row = height - 1 - from_below
     which, number = (each[row, column].astype(np.intp) for each in (part, cell))
-    return Pixels(row, column, which, number, size)
+    right, up = camera.GetWindowCenter()
+    return Pixels(row, column, which, number, size, (right * width / height, up))
 
 
 class _Block(NamedTuple):
