@@ -181,9 +181,11 @@ FLUENT = """(0 "by hand")
 
 
 def test_cells_of_fluent_are_read_once(tmp_path):
-    (tmp_path / "a.cas").write_text(FLUENT)
-    mesh = vizlight.read(tmp_path / "a.cas")
-    assert (mesh.n_points, mesh.n_cells) == (4, 2)
+    for name in ("a.cas", "a.msh"):
+        (tmp_path / name).write_text(FLUENT)
+        mesh = vizlight.read(tmp_path / name)
+        assert (mesh.n_points, mesh.n_cells) == (4, 2)
+        assert mesh.max_cell_dimensionality == 2
 
 
 NRRD = b"NRRD0004\ntype: short\ndimension: 3\nsizes: 10 3 2\nencoding: raw\n\n" + bytes(120)

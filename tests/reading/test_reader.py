@@ -342,6 +342,8 @@ def test_groups_of_faces_beside_lines_are_left_out(tmp_path):
     [
         "Could not locate key vtkExodusIIReader::GLOBAL_TEMPORAL_VARIABLE.",
         "Skipping BC_t node: BC_t type 'BCFarfield' not supported yet.",
+        "`FlowSolutionPointers` in the CGNS file 'a.cgns' refer to invalid solution nodes.",
+        "No data file (.dat.h5) found. Only the case file will be opened.",
     ],
 )
 def test_warnings_of_what_is_no_part_of_a_mesh_refuse_no_file(said, tmp_path, monkeypatch):

@@ -170,16 +170,16 @@ def is_tree(mesh: pv.DataSet) -> bool:
 
 
 def _somas(case: Case) -> list[Layer]:
-    """Return the layer of a ball at each point of a cell body."""
+    """Return the layer of a ball at each point of a cell body, none where all points are of one."""
     mesh = case.data.run()
-    kinds = mesh.point_data.get("type")
-    if not is_tree(mesh) or kinds is None or not np.any(np.asarray(kinds) == neurons.SOMA):
+    bodies = np.asarray(mesh.point_data.get("type", ())) == neurons.SOMA
+    if not is_tree(mesh) or not bodies.any() or bodies.all():
         return []
     ends = (neurons.SOMA - 0.5, neurons.SOMA + 0.5)
     points = Step("", ".cast_to_poly_points", case.data)
-    bodies = Step("", ".threshold", points, ends, scalars="type")
+    of_body = Step("", ".threshold", points, ends, scalars="type")
     ball = Step("", "pyvista.Sphere", radius=1.0)
-    balls = Step("soma", ".glyph", bodies, orient=False, scale="radius", factor=1.0, geom=ball)
+    balls = Step("soma", ".glyph", of_body, orient=False, scale="radius", factor=1.0, geom=ball)
     return [case.inked(balls)]
 
 

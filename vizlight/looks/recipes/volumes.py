@@ -206,9 +206,11 @@ def _level(case: Case, array: Named) -> _Level | str:
 def _are_low_inside(case: Case, array: Named, level: float | tuple[float, float]) -> bool:
     """Return whether an isosurface encloses the lesser part of a scan, of low values.
 
-    What it would show of a body is a gap.
+    What it would show of a body is a gap, unless the others are one value, as of statistics.
     """
-    return not isinstance(level, tuple) and bool(np.mean(_sample(case, array) > level) > MOSTLY)
+    values = _sample(case, array)
+    is_gap = np.mean(values > level) > MOSTLY > np.mean(values == values.max())
+    return not isinstance(level, tuple) and bool(is_gap)
 
 
 def _size_of_both_signs(values: Array, volume: Step, array: Named) -> float | None:
@@ -331,7 +333,9 @@ def slices(case: Case, why: str = "") -> Drawing:
     drawing = _of_cut(case, cut, outside, camera, case.data)
     first, *strokes = drawing.layers
     faces = replace(case, data=outside, contents=Contents(outside.run()))
-    layers = [first, Layer(outside, first.keywords), *strokes, *case.strokes([faces.creases])]
+    # Of what is hollow the faces of the cut may be empty.
+    both = [each for each in (first, Layer(outside, first.keywords)) if each.mesh.run().n_points]
+    layers = [*both, *strokes, *case.strokes([faces.creases])]
     words = f"slices of {array.name} through the middle, around the corner toward the eye{why}"
     return replace(drawing, layers=[*layers, *case.boxed(box, camera)], words=words)
 
