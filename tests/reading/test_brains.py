@@ -13,6 +13,7 @@ import vizlight
 from vizlight import files
 from vizlight.looks.recipes import drawing
 from vizlight.mesh import meaning
+from vizlight.reading.brains import mark_as_body
 
 nibabel = pytest.importorskip("nibabel")
 
@@ -324,6 +325,14 @@ def test_values_of_brain_models_without_places_say_what_to_become(of_models):
     path = of_models("a.dscalar.nii", nibabel.cifti2.ScalarAxis(["sulc"]), [DEPTH])
     with pytest.raises(files.FileError, match="CIFTI.*read the surface of one.*overlay="):
         vizlight.read(path)
+
+
+def test_a_slab_of_a_scan_is_cut_unless_its_shape_is_asked_for():
+    slab = pv.ImageData(dimensions=(40, 40, 12))
+    slab["T"] = np.exp(-((slab.points - (20, 20, 6)) ** 2).sum(axis=1) / 40)
+    mark_as_body(slab, "affine", np.eye(4))
+    assert vizlight.look(slab).summary.startswith("slices of T")
+    assert vizlight.look(slab, "shape").summary.startswith("isosurface T")
 
 
 def test_a_slice_of_a_scan_is_gray_and_no_map(tmp_path):

@@ -81,6 +81,16 @@ test_damaged_molecules_are_refused = refused_files(
 )
 
 
+def test_water_beside_a_molecule_is_left_out_of_its_picture(tmp_path):
+    atoms = [ATOM.format(i + 1, 1, 1.5 * i, 0, 0) for i in range(4)]
+    water = "HETATM   99  O   HOH A  99       9.000   9.000   9.000  1.00  0.00           O  \n"
+    look = vizlight.look(written(tmp_path, "".join([*atoms, water]), "a.pdb"))
+    assert look.drawing.notes == ["left out: HOH (1 atoms)"]
+    assert look.drawing.layers[0].mesh.run().bounds[3] < 5
+    alone = vizlight.look(written(tmp_path, water, "b.pdb"))
+    assert alone.drawing.notes == []
+
+
 def test_points_without_elements_stay_a_scan(tmp_path):
     scan = vizlight.read(written(tmp_path, "0 0 0\n1 0 0\n0 1 0\n", "scan.xyz"))
     assert (scan.n_points, scan.n_lines) == (3, 0)

@@ -202,6 +202,10 @@ def molecule(case: Case, size: float = 1.0) -> Drawing:
     if array.name == "radius":
         # Balls have it as their size alone.
         return lines(case)
+    dry, note = _without_water(atoms)
+    if note:
+        drawing = molecule(replace(case, data=dry, contents=Contents(dry.run())), size)
+        return replace(drawing, notes=[*drawing.notes, note])
     bonds = atoms
     if array.role == "kinds":
         bonds = Step("halves", "files.surface_of", atoms, labels=array.name)
@@ -233,6 +237,19 @@ def molecule(case: Case, size: float = 1.0) -> Drawing:
         # Symbols of elements need no title.
         keys = [key | {"title": title} for key in keys]
     return replace(drawing, layers=[*drawing.layers, *case.strokes([cell])], keys=keys)
+
+
+def _without_water(atoms: Step) -> tuple[Step, str]:
+    """Return the step that takes the atoms that are not of water, if there are both, and a note."""
+    counts = molecules.beside_chains(atoms.run())
+    names = meaning.flags(atoms.run(), molecules.RESIDUE)
+    water = [number for number, name in names.items() if name in molecules.WATERS & set(counts)]
+    if len(water) != 1 or len(names) == 1:
+        return atoms, ""
+    ends, name = (water[0] - 0.5, water[0] + 0.5), names[water[0]]
+    dry = Step("dry", ".threshold", atoms, ends, invert=True, scalars=molecules.RESIDUE)
+    dry = Step("dry", ".extract_surface", dry, algorithm="dataset_surface")
+    return dry, f"left out: {name} ({counts[name]} atoms)"
 
 
 def _molecule_named(atoms: Step) -> str:

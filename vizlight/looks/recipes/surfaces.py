@@ -77,7 +77,9 @@ def values(case: Case) -> Drawing:
             # The surface of a single label is a shape.
             shape = replace(case, question="shape", data=mesh)
             drawing = surface(shape)
-            keys = _keys(shape, drawing.scene, f"{titled(mesh.run(), array.name)} {kinds[0]:g}")
+            # Alone in its file, the number of a label tells nothing.
+            number = f" {kinds[0]:g}" * (array.distinct > 2)
+            keys = _keys(shape, drawing.scene, titled(mesh.run(), array.name) + number)
             return replace(drawing, words=f"surface of {array.name} {kinds[0]:g}", keys=keys)
         inner = _inside(case, array, kinds) if len(kinds) == 1 else None
         if inner is not None:

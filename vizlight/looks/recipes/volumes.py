@@ -19,6 +19,7 @@ from vizlight.looks.recipes.drawing import ON_SURFACES, Doubt, Drawing, Layer, r
 from vizlight.looks.steps import Step
 from vizlight.mesh import meaning, montages
 from vizlight.reading import density_maps, molecules
+from vizlight.vtk.cells import dimensions
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
@@ -103,9 +104,11 @@ def isosurface(case: Case) -> Drawing:
     if case.wishes.question == "auto" and _is_stack(case, array):
         # A sheet of slices has no place among other meshes.
         return stack(case) if case.wishes.frame is None else slices(case)
-    level = _level(case, array)
     # Where values are shown there is room for their key.
     valued = replace(case, question="value")
+    if case.wishes.question == "auto" and case.is_of_body and _is_slab(case.data.run()):
+        return slices(valued)
+    level = _level(case, array)
     if isinstance(level, str):
         return _cut_open(valued) or slices(valued, level)
     if not level.is_sure and case.is_of_body and _are_low_inside(case, array, level.at):
@@ -520,6 +523,12 @@ def _has_bones(values: Array) -> bool:
     """Return whether a scan has much air and some bone by the numbers of computed tomography."""
     bones = float(np.mean(values > BONE))
     return float(np.mean(_is_air(values))) > MUCH_AIR and BONES[0] < bones < BONES[1]
+
+
+def _is_slab(mesh: pv.DataSet) -> bool:
+    """Return whether an image has many voxels along two axes, and few along the other."""
+    least, middle, _ = sorted(dimensions(mesh)) or (0, 0, 0)
+    return least <= VOXELS < middle
 
 
 def _is_scan(case: Case, array: Named) -> bool:
