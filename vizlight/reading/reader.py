@@ -249,8 +249,7 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
             meshes = []
         except SystemExit as error:  # so ends meshio where it finds a fault
             reason = f"its reader ended with {error.code}"
-    unread = [match for match in map(_DIRECTIVE.search, errors) if match]
-    errors = _faults(errors)
+    said, errors = errors, _faults(errors)
     if not meshes or not all(isinstance(mesh, pv.DataSet) and mesh.n_points for mesh in meshes):
         reason = f"no points: {errors[0]}" if errors else reason
         if reason.startswith("its overlay"):
@@ -262,7 +261,7 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
     # After an error VTK gives what it has read so far: a part of a mesh, which looks like a whole.
     if errors:
         raise _damaged(path, errors[0])
-    _warn_of_unread(path, unread)
+    _warn_of_unread(path, said)
     if isinstance(data, pv.MultiBlock):
         notes += _left_out(data, meshes)
     if path.suffix.lower() == ".obj" and wavefront.has_free_form(path):
@@ -554,8 +553,12 @@ def _arrays(mesh: pv.DataSet) -> set[str]:
     return {name for name in (*mesh.point_data, *mesh.cell_data) if not name.startswith("vtk")}
 
 
-def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
-    """Warn of fields of an OpenFOAM case that VTK could not read."""
+def _warn_of_unread(path: Path, errors: list[str]) -> None:
+    """Warn of fields of an OpenFOAM case, and of steps of CGNS, that VTK could not read."""
+    if any("FlowSolutionPointers" in error for error in errors):
+        words = "has FlowSolutionPointers that name no solutions: those of one step are read"
+        _check.warn(f"file: '{path}' {words}")
+    unread = [match for match in map(_DIRECTIVE.search, errors) if match]
     if unread:
         fields = ", ".join(f"'{match[1]}' (#{match[2]})" for match in unread)
         _check.warn(
