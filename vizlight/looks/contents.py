@@ -439,7 +439,7 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
 
 
 def _active(mesh: pv.DataSet) -> Sequence[str | None]:
-    """Return the names of the active arrays, those of von Mises stress where there are none."""
+    """Return the names of the active arrays, else those of von Mises stress."""
     active = [mesh.active_scalars_name, mesh.active_vectors_name]
     stressed = [name for name in mesh.array_names if stresses.is_von_mises(name)]
     return stressed if active == [None, None] else active

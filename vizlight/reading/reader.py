@@ -518,8 +518,10 @@ def _name_materials(mesh: pv.DataSet) -> None:
     Where the first faces have one, VTK gives them the number of faces without a material.
     """
     ids = mesh.cell_data.get("MaterialIds")
-    words = [str(name) for name in mesh.field_data.get("MaterialNames", ())]
-    if ids is None or not np.isin(ids, range(len(words))).all():
+    if ids is None or "MaterialNames" not in mesh.field_data:
+        return
+    words: list[str] = np.asarray(mesh.field_data["MaterialNames"]).tolist()
+    if not np.isin(ids, range(len(words))).all():
         return
     words = [words[0] if word == "NO_MATERIAL" else word for word in words]
     kinds = list(dict.fromkeys(words))

@@ -240,7 +240,7 @@ def molecule(case: Case, size: float = 1.0) -> Drawing:
 
 
 def _without_water(atoms: Step) -> tuple[Step, str]:
-    """Return the step that takes the atoms that are not of water, if there are both, and a note."""
+    """Return the step that takes the atoms beside those of water, and a note on these."""
     counts = molecules.beside_chains(atoms.run())
     names = meaning.flags(atoms.run(), molecules.RESIDUE)
     water = [number for number, name in names.items() if name in molecules.WATERS & set(counts)]
