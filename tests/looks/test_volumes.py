@@ -299,6 +299,10 @@ def test_a_map_of_densities_has_a_level_of_2_deviations_where_nothing_is_steeper
     assert look.shown == "isosurface"
     assert look.mesh.clean().n_open_edges == 0
     assert look.drawing.layers[-1].mesh.path == "render.box_axes"
+    # Noise has no surface.
+    grid["T"] = np.random.default_rng(0).lognormal(size=grid.n_points)
+    assert vizlight.look(grid).shown == "slices"
+    assert vizlight.look(grid, "shape").shown == "isosurface"
 
 
 def test_a_map_of_differences_of_densities_has_a_level_of_3_deviations_of_both_signs():

@@ -71,8 +71,8 @@ MOST_OF_CUT, LEAST_OF_CUT = (10, 90), 0.1
 #: point out of it.
 CLEAR = {"opacity": 0.5, "culling": "back"}
 OUTWARD = {"auto_orient_normals": True, "split_vertices": False, "cell_normals": False}
-#: Most pieces of an isosurface, where none has this share of it.
-MOST_PIECES, LARGE = 50, 0.3
+#: Most pieces of an isosurface, where none has this share of it; share of one that is sure.
+MOST_PIECES, LARGE, DUST = 50, 0.3, 0.01
 #: Radians in a pixel from which the normals of an isosurface may turn too fast, and how they are
 #: computed for that.
 ROUGH = 0.1
@@ -119,7 +119,8 @@ def isosurface(case: Case) -> Drawing:
     has_molecule = molecules.PLACES in case.data.run().field_data
     if has_molecule:
         mesh = Step("outward", ".compute_normals", mesh, **OUTWARD)
-    if not level.is_sure and _is_crumbs(mesh.run()):
+    is_one = case.wishes.question == "auto" and not isinstance(level.at, tuple)
+    if is_one and _is_crumbs(mesh.run(), DUST if level.is_sure else LARGE):
         return _cut_open(valued) or slices(valued, "; isosurfaces are crumbs")
     # One that is asked for besides is shown on it.
     second = case.contents.named(str(case.wishes.picture.get("scalars") or ""))
@@ -312,12 +313,12 @@ def _without_debris(mesh: Step, notes: list[str]) -> Step:
     return Step("pieces", ".connectivity", mesh, "specified", list(range(kept)))
 
 
-def _is_crumbs(mesh: pv.DataSet) -> bool:
-    """Return whether an isosurface is in many pieces of which none is large."""
+def _is_crumbs(mesh: pv.DataSet, large: float = LARGE) -> bool:
+    """Return whether an isosurface is in many pieces of which none has a large share of it."""
     if not mesh.n_cells:
         return False
     sizes = np.bincount(piece_numbers(mesh))
-    return len(sizes) > MOST_PIECES and sizes.max() < LARGE * sizes.sum()
+    return len(sizes) > MOST_PIECES and sizes.max() < large * sizes.sum()
 
 
 def _is_rough(case: Case, mesh: Step, camera: Step) -> bool:
