@@ -104,6 +104,21 @@ def test_words_of_a_key_take_few_lines():
     assert " ".join(key._lines) == "direction on the screen"
 
 
+def test_long_names_of_kinds_are_in_two_lines_within_the_picture():
+    long = {0: "shale", 1: "a group of some sandstones and of many other rocks beside them"}
+    sizes = []
+    for names in (long, {0: "shale", 1: "a group of some"}):
+        plotter = pv.Plotter(off_screen=True, window_size=(1200, 800))
+        plotter.vizlight.add_mesh(pv.Plane(), scene=presets.shape())
+        plotter.vizlight.add_key(question="value", cmap=vizlight.maps.kinds(names))
+        seen = plotter.screenshot(return_img=True)
+        assert (seen[:, -1] == 255).all()
+        texts = [actor for actor in plotter.renderer.GetViewProps() if actor.IsA("vtkTextActor")]
+        sizes.append(max(actor.GetTextProperty().GetFontSize() for actor in texts))
+    # Letters beside a long name are nearly as large as beside a short one.
+    assert sizes[0] > 0.8 * sizes[1]
+
+
 def test_words_of_a_bar_that_do_not_fit_are_left_out_evenly():
     places = [0.1 * i for i in range(11)]
     assert all(margins._thinned(places, 0.0, 11))

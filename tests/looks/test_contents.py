@@ -42,6 +42,7 @@ def test_roles(name, values, role):
     [
         ("GlobalNodeId", np.arange),
         ("NumIdCell", np.arange),
+        ("ansys_node_num", np.arange),
         ("constant", np.ones),
         ("Unnamed_0", np.arange),
         ("latitude", rising),
@@ -305,6 +306,18 @@ def test_parts_of_dates_and_what_most_points_lack_come_last():
         "Day",
         "damage",
     ]
+
+
+def test_an_array_of_nearly_one_value_comes_last_and_von_mises_first():
+    block = pv.ImageData(dimensions=(9, 9, 9)).cast_to_unstructured_grid()
+    block["pressure"] = np.where(np.arange(block.n_points) < 9, rising(block.n_points), 7.5)
+    block["vonmises"], block["area"] = rising(block.n_points), rising(block.n_points)
+    block.set_active_scalars(None)
+    names = [array.name for array in Contents(block).arrays]
+    assert (names[0], names[-1]) == ("vonmises", "pressure")
+    # One that is active is chosen by someone.
+    block.set_active_scalars("area")
+    assert Contents(block).arrays[0].name == "area"
 
 
 def test_errors_of_other_arrays_come_last():

@@ -8,7 +8,7 @@ from vizlight import look
 from vizlight.looks import framing
 from vizlight.looks.contents import Contents
 from vizlight.looks.framing import eye_of
-from vizlight.mesh import georeference
+from vizlight.mesh import georeference, meaning
 
 
 def eye(mesh):
@@ -149,6 +149,21 @@ def test_a_model_that_stands_on_nothing_has_y_up_unless_it_is_mirrored_in_y(turn
     thing = thing.rotate_x(turn)
     assert eye_of(thing, Contents(thing), is_model=True).up == up
     assert eye(thing).up == (0, 0, 1)
+
+
+def test_a_model_that_stands_along_z_has_z_up():
+    foot = pv.Cone(direction=(0, 0, 1), radius=0.6, resolution=24).triangulate().subdivide(3)
+    assert eye_of(foot, Contents(foot), is_model=True).up == (0, 0, 1)
+    thing = foot.rotate_x(-90)
+    assert eye_of(thing, Contents(thing), is_model=True).up == (0, 1, 0)
+
+
+def test_an_image_of_depths_is_seen_from_the_side_of_its_camera():
+    x, z = (part.ravel() for part in np.meshgrid(np.linspace(-1, 1, 9), np.linspace(-1, 1, 9)))
+    cloud = pv.PolyData(np.stack([x, 2 + x**2 + z, z], axis=1))
+    meaning.attach(cloud, meaning.Meaning(axes=[*meaning.CAMERA]))
+    toward = eye_of(cloud, Contents(cloud)).toward
+    assert toward[1] < -0.9 * np.linalg.norm(toward)
 
 
 @pytest.mark.parametrize("name", ["head.obj", "head.OFF", "head.stl"])

@@ -562,6 +562,8 @@ def test_one_label_is_a_shape_and_what_is_around_all_kinds_is_left_out():
     image["label"] = inside.astype(np.int16)
     look = vizlight.look(image, size=SIZE)
     assert look.summary.startswith("surface of label 1")
+    # Alone, its number tells nothing.
+    assert look.key[0]["title"].partition(";")[0] == "label"
     grid = image.cast_to_unstructured_grid()
     grid["material"] = np.where(inside, 3 + (z > 0), 2).astype(np.int32)
     del grid.point_data["label"]

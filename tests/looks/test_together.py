@@ -94,6 +94,9 @@ def test_blocks_of_other_dimensions_are_drawn_and_walls_of_a_volume_are_not():
     assert [part[0].max_cell_dimensionality for part in blocks.by_dimension(walls)] == [3]
     walls["wing"] = pv.Plane(center=(4, 0, 0), i_size=5)
     assert [part.keys() for part in blocks.by_dimension(walls)] == [["air"], ["wing"]]
+    # A point alone is the reference of a rigid body.
+    walls["reference"] = pv.PolyData([(0.0, 0.0, 0.0)])
+    assert [part.keys() for part in blocks.by_dimension(walls)] == [["air"], ["wing"]]
     # The borders of a plane mesh are no lines of their own.
     plane = pv.Plane()
     inlet = plane.extract_feature_edges(feature_edges=False, manifold_edges=False)

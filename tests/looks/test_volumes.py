@@ -86,6 +86,18 @@ def test_an_isosurface_of_a_scan_around_its_lowest_values_gives_way_to_slices():
     assert "slices of T" in look.summary
     grid["T"] = 1 - grid["T"]
     assert "isosurface T" in vizlight.look(grid).summary
+    # What is around is one value, as where statistics are masked.
+    grid["T"] = np.minimum(0.2 - grid["T"], 0)
+    assert "isosurface T" in vizlight.look(grid).summary
+
+
+def test_a_hollow_body_that_its_middle_does_not_meet_is_drawn(tmp_path):
+    shell = pv.SolidSphere(inner_radius=0.8, outer_radius=1.0, theta_resolution=40)
+    corner = shell.clip_box((-2, 0.1, -2, 0.1, -2, 0.1), merge_points=True)
+    corner["T"] = np.random.default_rng(0).random(corner.n_points)
+    look = vizlight.look(corner, "value", size=(300, 200))
+    look.save(tmp_path / "a.png")
+    assert all(layer.mesh.run().n_points for layer in look.drawing.layers)
 
 
 def test_a_temperature_has_the_colours_of_heat():
@@ -287,6 +299,10 @@ def test_a_map_of_densities_has_a_level_of_2_deviations_where_nothing_is_steeper
     assert look.shown == "isosurface"
     assert look.mesh.clean().n_open_edges == 0
     assert look.drawing.layers[-1].mesh.path == "render.box_axes"
+    # Noise has no surface.
+    grid["T"] = np.random.default_rng(0).lognormal(size=grid.n_points)
+    assert vizlight.look(grid).shown == "slices"
+    assert vizlight.look(grid, "shape").shown == "isosurface"
 
 
 def test_a_map_of_differences_of_densities_has_a_level_of_3_deviations_of_both_signs():

@@ -151,10 +151,11 @@ def test_with_a_level_values_of_cells_are_averaged_and_holes_are_left_out():
     grid = grid.cell_data_to_point_data()
     grid["v"][grid.points[:, 2] > 12] = np.nan
     parts = files.without_corner(grid, "v", -6.0)
-    for part in (parts["cut"], parts["outside"]):
-        assert np.isfinite(part.points).all()
-        assert np.isfinite(part["v"]).all()
-        assert part.bounds[5] == 12
+    for each in (parts, files.without_corner(grid, "v")):
+        for part in (each["cut"], each["outside"]):
+            assert np.isfinite(part.points).all()
+            assert np.isfinite(part["v"]).all()
+            assert part.bounds[5] == 12
 
 
 def test_a_level_that_nothing_reaches_leaves_nothing():

@@ -14,6 +14,7 @@ import vizlight
 from vizlight import files
 from vizlight.looks.recipes import drawing
 from vizlight.mesh import meaning
+from vizlight.reading.brains import mark_as_body
 
 nibabel = pytest.importorskip("nibabel")
 
@@ -316,6 +317,14 @@ def test_maps_of_brain_models_lie_over_their_surface(of_models, left, tmp_path):
 def test_values_of_brain_models_without_places_say_what_to_become(of_models):
     path = of_models("a.dscalar.nii", nibabel.cifti2.ScalarAxis(["sulc"]), [DEPTH])
     refused(path, "CIFTI.*read the surface of one.*overlay=")
+
+
+def test_a_slab_of_a_scan_is_cut_unless_its_shape_is_asked_for():
+    slab = pv.ImageData(dimensions=(40, 40, 12))
+    slab["T"] = np.exp(-((slab.points - (20, 20, 6)) ** 2).sum(axis=1) / 40)
+    mark_as_body(slab, "affine", np.eye(4))
+    assert vizlight.look(slab).summary.startswith("slices of T")
+    assert vizlight.look(slab, "shape").summary.startswith("isosurface T")
 
 
 def test_a_slice_of_a_scan_is_gray_and_no_map(tmp_path):

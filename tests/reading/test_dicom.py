@@ -60,6 +60,16 @@ def test_tomography_is_grey_in_hounsfield_units_and_millimetres(named, tmp_path)
     assert np.ptp(picture, axis=2).max() < 8
 
 
+def test_tones_by_a_scale_are_grey_and_other_numbers_in_floating_point_are_not(tmp_path):
+    path = written(tmp_path / "a.dcm", modality=b"MR")
+    one, other = (element(0x28, 0x1053, b"DS", slope) for slope in (b"1", b"0.549"))
+    path.write_bytes(path.read_bytes().replace(one, other))
+    mesh = vizlight.read(path)
+    assert vizlight.look(mesh).drawing.keys[0]["cmap"] == "gray"
+    mesh["DICOMImage"] = np.random.default_rng(0).random(mesh.n_points)
+    assert vizlight.look(mesh).drawing.keys[0]["cmap"] != "gray"
+
+
 def test_the_bar_of_an_image_is_in_millimetres_and_it_has_no_north(tmp_path, monkeypatch):
     words, triangles = [], letters.triangles
     monkeypatch.setattr(letters, "triangles", lambda word: words.append(word) or triangles(word))

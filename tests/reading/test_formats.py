@@ -144,8 +144,10 @@ FLUENT = """(0 "by hand")
 
 
 def test_cells_of_fluent_are_read_once(tmp_path):
-    mesh = vizlight.read(saved(tmp_path / "a.cas", FLUENT))
-    assert (mesh.n_points, mesh.n_cells) == (4, 2)
+    for name in ("a.cas", "a.msh"):
+        mesh = vizlight.read(saved(tmp_path / name, FLUENT))
+        assert (mesh.n_points, mesh.n_cells) == (4, 2)
+        assert mesh.max_cell_dimensionality == 2
 
 
 NRRD = b"NRRD0004\ntype: short\ndimension: 3\nsizes: 10 3 2\nencoding: raw\n\n" + bytes(120)

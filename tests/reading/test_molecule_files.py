@@ -100,6 +100,12 @@ def test_bonds_and_charges_are_those_of_tripos(tmp_path):
     assert mesh["charge"].tolist() == [0.25, -0.25]
 
 
+def test_types_of_force_fields_tell_their_elements(tmp_path):
+    text = MOL2.replace("2 1\n", "4 0\n").replace("C.3", "ca").replace("O.2", "Na")
+    text = text.replace("@<TRIPOS>BOND\n1 7 9 2\n", "3 X 5 0 0 cl 1 UNL\n4 X 9 0 0 h1 1 UNL\n")
+    assert vizlight.read(written(tmp_path, text, "a.mol2"))["atom_type"].tolist() == [6, 11, 17, 1]
+
+
 @pytest.mark.parametrize(
     ("text", "name", "title"),
     [

@@ -22,11 +22,16 @@ def test_the_first_of_several_models_is_read(tmp_path):
     atoms = [ATOM.format(i + 1, i + 1, 1.5 * i, 0, 0) for i in range(4)]
     one = vizlight.read(written(tmp_path, "".join(atoms) + "END\n", "one.pdb"))
     models = "".join(f"MODEL     {k}\n{''.join(atoms)}ENDMDL\n" for k in (1, 2, 3))
-    with pytest.warns(UserWarning, match="the first of 3 states of a molecule is read"):
-        first = vizlight.read(written(tmp_path, f"{models}END\n", "three.pdb"))
-    assert first.n_points == one.n_points == 4
-    assert first.n_lines == one.n_lines == 3
-    np.testing.assert_array_equal(first.points, one.points)
+    states = f"{''.join(atoms)}END\n" * 3
+    for text in (f"{models}END\n", states):
+        with pytest.warns(UserWarning, match="the first of 3 states of a molecule is read"):
+            first = vizlight.read(written(tmp_path, text, "three.pdb"))
+        assert first.n_points == one.n_points == 4
+        assert first.n_lines == one.n_lines == 3
+        np.testing.assert_array_equal(first.points, one.points)
+    # A ligand behind a chain is no other state.
+    both = f"{''.join(atoms)}END\n{ATOM.format(9, 9, 9, 9, 9)}END\n"
+    assert vizlight.read(written(tmp_path, both, "both.pdb")).n_points == 5
 
 
 def test_elements_are_those_of_the_columns_or_of_the_names(tmp_path):
@@ -71,6 +76,16 @@ test_damaged_molecules_are_refused = refused_files(
     (WATER.replace("0.96", "x"), "line 4 has no element"),
     (WATER.replace("0.96", "nan"), "line 4 has no element"),
 )
+
+
+def test_water_beside_a_molecule_is_left_out_of_its_picture(tmp_path):
+    atoms = [ATOM.format(i + 1, 1, 1.5 * i, 0, 0) for i in range(4)]
+    water = "HETATM   99  O   HOH A  99       9.000   9.000   9.000  1.00  0.00           O  \n"
+    look = vizlight.look(written(tmp_path, "".join([*atoms, water]), "a.pdb"))
+    assert look.drawing.notes == ["left out: HOH (1 atoms)"]
+    assert look.drawing.layers[0].mesh.run().bounds[3] < 5
+    alone = vizlight.look(written(tmp_path, water, "b.pdb"))
+    assert alone.drawing.notes == []
 
 
 def test_points_without_elements_stay_a_scan(tmp_path):

@@ -42,6 +42,11 @@ def test_a_neuron_shows_path_lengths_and_its_soma(path):
     assert [other.python for other in look.others] == ["array='radius'", "array='type'"]
 
 
+def test_a_neuron_of_one_type_is_no_soma(path):
+    path.write_text("\n".join(" ".join([row[0], "1", row[4:]]) for row in ROWS[1:]))
+    assert len(vizlight.look(path).drawing.layers) == 1
+
+
 def test_a_neuron_lies_across_the_picture(path):
     path.write_text("\n".join([*ROWS, "6 3 1 1 -9 1 2", "7 3 0.5 0 4 1 1"]))
     look = vizlight.look(path)

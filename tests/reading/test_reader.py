@@ -337,6 +337,7 @@ def test_groups_of_faces_beside_lines_are_left_out(tmp_path):
     [
         "Could not locate key vtkExodusIIReader::GLOBAL_TEMPORAL_VARIABLE.",
         "Skipping BC_t node: BC_t type 'BCFarfield' not supported yet.",
+        "No data file (.dat.h5) found. Only the case file will be opened.",
     ],
 )
 def test_warnings_of_what_is_no_part_of_a_mesh_refuse_no_file(said, tmp_path, monkeypatch):
@@ -349,6 +350,9 @@ def test_warnings_of_what_is_no_part_of_a_mesh_refuse_no_file(said, tmp_path, mo
     monkeypatch.setattr(formats, "read", found)
     (tmp_path / "a.cgns").touch()
     assert vizlight.read(tmp_path / "a.cgns").n_points == pv.Sphere().n_points
+    said = "`FlowSolutionPointers` in the CGNS file 'a.cgns' refer to invalid solution nodes."
+    with pytest.warns(UserWarning, match="name no solutions: those of one step are read"):
+        vizlight.read(tmp_path / "a.cgns")
 
 
 def test_arrays_with_keys_of_another_program_are_read(tmp_path):

@@ -27,6 +27,16 @@ def test_columns_of_places_are_points_with_the_others_as_values(tmp_path):
     np.testing.assert_array_equal(mesh.points, [(0, 1, 2), (3, 4, 5)])
 
 
+def test_the_data_of_an_export_of_cfx_are_a_table(tmp_path):
+    head = "[Name]\nwing\n\n[Parameters]\nAxis = 0 [m], 0 [m], 1 [m]\n\n[Data]\n"
+    text = (
+        f"{head}X [ m ], Y [ m ], Z [ m ], p [ Pa ]\n0, 1, 2, 7\n3, 4, 5, 8\n\n[Faces]\n0, 1, 2\n"
+    )
+    mesh = vizlight.read(written(tmp_path / "a.csv", text))
+    np.testing.assert_array_equal(mesh.points, [(0, 1, 2), (3, 4, 5)])
+    assert mesh["p [ Pa ]"].tolist() == [7, 8]
+
+
 def test_longitudes_are_a_map_with_decimal_commas(tmp_path):
     text = "station;lon;lat;t (K)\n'A';10,5;50;280\n'B';11;51,25;281,5\n"
     mesh = read_warned(written(tmp_path / "a.csv", text), "left out are columns of text: station")

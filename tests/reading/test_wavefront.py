@@ -4,6 +4,7 @@ import pytest
 from refusals import saved
 
 import vizlight
+from vizlight.mesh import meaning
 
 OBJ = b"# 12/31/2020\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n"
 
@@ -26,6 +27,25 @@ def test_colors_of_some_points_of_obj(tmp_path):
     (tmp_path / "a.obj").write_bytes(OBJ.replace(b"v 0 0 0", b"v 0 0 0 1 0 0"))
     with pytest.warns(UserWarning, match="colours of some points alone, which are left out"):
         assert "color" not in vizlight.read(tmp_path / "a.obj").point_data
+
+
+def test_weights_of_points_of_obj_are_no_colors(tmp_path):
+    (tmp_path / "a.obj").write_bytes(OBJ.replace(b"v 0 0 0", b"v 0 0 0 1.0"))
+    mesh = vizlight.read(tmp_path / "a.obj")
+    assert "color" not in mesh.point_data
+    assert mesh.points.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+
+
+def test_materials_have_the_names_of_their_faces(tmp_path):
+    faces = "f 1 2 3\nusemtl glass\nf 2 3 4\nusemtl a_leg\nf 1 3 4\nusemtl glass\nf 1 2 4\n"
+    for head in ("", "mtllib a.mtl\nusemtl glass\n"):
+        text = f"{head}v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n{faces}"
+        (tmp_path / "a.obj").write_text(text)
+        mesh = vizlight.read(tmp_path / "a.obj")
+        names = meaning.flags(mesh, "material")
+        first = "glass" if head else "NO MATERIAL"
+        of_faces = [names[number] for number in mesh["material"].tolist()]
+        assert of_faces == [first, "glass", "a leg", "glass"]
 
 
 def test_texture_coordinates_that_are_missing(tmp_path):

@@ -34,6 +34,8 @@ MARGIN, LETTERS = 0.025, 0.032
 BAR_WIDE, LEAST_BAR, MOST_NUMBERS = 0.25, 0.4, 5
 #: Height of the colour of a kind in a bar that stands, in letters.
 KIND = 2.2
+#: Most letters in a line of the name of a kind.
+COLUMNS = 16
 #: Height of a bar that lies, in letters, and length of one without classes, in that of the data.
 BAR_HIGH, SHORT_BAR = 0.8, 0.65
 #: Letters of the title in those of keys, the least share of them in which a long title is set, and
@@ -389,13 +391,14 @@ class MarginKey:
         words = LINE * letters * len(self._lines) + (0.5 * letters if self._lines else 0)
         if not self._marks:
             return min(2 * self._half, width), 2 * self._half + words
-        widest = max(len(word) for _, word in self._marks)
-        least = 1.3 * LINE * letters * min(len(self._marks), MOST_NUMBERS)
+        rows = max(word.count("\n") + 1 for word in self._written)
+        count = rows * len(self._marks) if rows > 1 else min(len(self._marks), MOST_NUMBERS)
+        least = 1.3 * LINE * letters * count
         bar = 2 * BAR_WIDE * self._half
-        box = bar + (0.6 + LETTER * widest) * letters
+        box = bar + 0.6 * letters + self.widest(letters)
         high = tall or max(4.0 * self._half, least)
         if self.has_kinds:
-            high = min(high, KIND * letters * len(self._marks))
+            high = min(high, KIND * letters * len(self._marks) * rows)
         return box, high + letters + words
 
     def _head(self, *, alone: bool) -> str:
@@ -458,7 +461,16 @@ class MarginKey:
 
     def widest(self, letters: float) -> float:
         """Return the width of the longest number beside a bar, with letters of a height."""
-        return LETTER * letters * max(len(word) for _, word in self._marks)
+        return LETTER * letters * max(len(line) for line in "\n".join(self._written).split("\n"))
+
+    @property
+    def _written(self) -> list[str]:
+        """Words along a bar; long names of kinds are in two lines, of which the second may end."""
+        words = [word for _, word in self._marks]
+        if not self.has_kinds:
+            return words
+        lines = [textwrap.wrap(word, COLUMNS, max_lines=2, placeholder="…") for word in words]
+        return ["\n".join(each) or word for each, word in zip(lines, words, strict=True)]
 
     def lay(self, columns: tuple[float, float], upper: float, letters: float) -> None:
         """Lay a bar between two columns, its numbers below it.
@@ -487,9 +499,9 @@ class MarginKey:
     def _write(self, most: float) -> None:
         """Write those words along a bar that fit, without a decimal that is 0 in all of them."""
         shown = _thinned([share for share, _ in self._marks], self._zero, most)
-        words = [word for (_, word), visible in zip(self._marks, shown, strict=True) if visible]
+        words = [word for word, visible in zip(self._written, shown, strict=True) if visible]
         end = ".0" if all(word.endswith(".0") for word in words) else ""
-        for label, (_, word), visible in zip(self._labels, self._marks, shown, strict=True):
+        for label, word, visible in zip(self._labels, self._written, shown, strict=True):
             label.SetInput(word.removesuffix(end) if visible else "")
 
     def _move(self, places: Array) -> None:

@@ -41,7 +41,8 @@ FLAT, SLAB, LAYER = 1e-6, 0.01, 0.15
 #: Words that end the names of what is no datum: numbers of nodes and cells, normals, coordinates,
 #: bounds, masks.
 _NO_DATUM = {
-    "id", "ids", "gid", "gids", "index", "indices", "rank", "number", "mask", "ghost", "ghosts",
+    "id", "ids", "gid", "gids", "origid", "index", "indices", "rank", "num", "number", "mask",
+    "ghost", "ghosts",
     "valid", "normal", "normals", "bnds", "bounds", "begin", "end", "point", "points", "coord",
     "coords", "coordinate", "coordinates", "tcoord", "tcoords", "uv", "uvs", "crs", "lon", "lons",
     "lat", "lats", "longitude", "longitudes", "latitude", "latitudes", "xlong", "xlat",
@@ -324,6 +325,11 @@ class Contents:
         return None
 
 
+def is_of_kinds(name: str) -> bool:
+    """Return whether the name of an array says that its numbers are those of kinds, as of parts."""
+    return not _KIND_WORDS.isdisjoint(_words(name))
+
+
 def says_heights(mesh: pv.DataSet, name: str) -> bool:
     """Return whether an array is one of heights by its name or words, and not as an only band.
 
@@ -410,7 +416,7 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         # Coordinates and numbers of cells along the axes are no vectors.
         and set(names) != _affine(mesh, names)
     ]
-    active = (mesh.active_scalars_name, mesh.active_vectors_name)
+    active = _active(mesh)
     parts = {name for vector in joined for name in vector.name.split(",")}
     of_place = _affine(mesh, [array.name for array in described if array.role != "kinds"])
 
@@ -432,12 +438,24 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
     return tuple(sorted([*described, *joined], key=rank))
 
 
+def _active(mesh: pv.DataSet) -> Sequence[str | None]:
+    """Return the names of the active arrays, else those of von Mises stress."""
+    active = [mesh.active_scalars_name, mesh.active_vectors_name]
+    stressed = [name for name in mesh.array_names if stresses.is_von_mises(name)]
+    return stressed if active == [None, None] else active
+
+
 def _is_of_few(mesh: pv.DataSet, array: Named) -> bool:
-    """Return whether an array is a part of a date, or missing at most points of a cloud."""
-    is_cloud = mesh.max_cell_dimensionality < 1 and array.name in mesh.point_data
-    rows = np.asarray(mesh.point_data[array.name]) if is_cloud else np.empty(0)
-    is_missing = rows.dtype.kind == "f" and np.isnan(rows).sum() > len(rows) / 2
-    return bool(is_missing) or array.name.lower() in _OF_DATES
+    """Return whether an array is part of a date, or nearly one value, or few of a cloud have it."""
+    if array.role not in ("values", "heights"):
+        return array.name.lower() in _OF_DATES
+    rows = np.asarray((mesh.cell_data if array.of_cells else mesh.point_data)[array.name])
+    is_cloud = mesh.max_cell_dimensionality < 1
+    is_missing = is_cloud and rows.dtype.kind == "f" and np.isnan(rows).sum() > len(rows) / 2
+    sample = rows[:: max(len(rows) // SAMPLE, 1)]
+    _, counts = np.unique(sample, return_counts=True)
+    is_even = counts.max() > NEARLY_ALL * len(sample)
+    return bool(is_missing or is_even) or array.name.lower() in _OF_DATES
 
 
 def _is_secondary(mesh: pv.DataSet, array: Named) -> bool:
@@ -501,7 +519,7 @@ def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named 
     """
     words = _words(name)
     # VTK numbers the groups of an .obj file, most of which are drawing aids.
-    of_kinds = name != "GroupIds" and not _KIND_WORDS.isdisjoint(words)
+    of_kinds = name != "GroupIds" and is_of_kinds(name)
     if named and (words[0] == "vtk" or (_are_numbers(words) and not of_kinds)):
         return None
     if named and (_is_table(name) or name in _TABLES):

@@ -73,6 +73,8 @@ MIRRORED, ALIKE, UNLIKE = 4000, 2.5, 1.5
 #: How much more the side of a body counts than other views, and how far the middle of what is on
 #: its left is from that of the body, as a share of its width.
 NEARLY_AS_LARGE, BESIDE = 1.3, 0.1
+#: Direction from what a camera sees to the right of it and above, where depths are seen too.
+BESIDE_CAMERA = (0.2, -1.0, 0.25)
 #: Long side over short side from which a flat strip is turned along the picture.
 STRIP = 4.0
 
@@ -194,6 +196,8 @@ def eye_of(
         array = None if shown is None else contents.named(shown)
         has_kinds = array is not None and array.role == "kinds"
         return _of_surface(mesh, shown, is_model=is_model, has_kinds=has_kinds)
+    if meaning.of(mesh).axes == meaning.CAMERA:
+        return Viewpoint(BESIDE_CAMERA, (0.0, 0.0, 1.0), False, "from beside the camera")
     points = _finite(mesh.points)
     extent = np.ptp(points, axis=0) if len(points) else points
     if contents.dimension == 3 and len(extent) == 3 and extent.min() < LAYER * np.median(extent):
@@ -273,7 +277,9 @@ def _of_surface(
         up = (0.0, 1.0, 0.0) if abs(toward[2]) > 0.9 else (0.0, 0.0, 1.0)
         return Viewpoint(_vector(toward), up, False, "along its mean normal")
     values, edges = _values(surface, shown, corner_ids, faces), _creases(surface)
-    has_y_up = not _lies_along_y(corners, areas) if is_model else stands_along_y(corners, areas)
+    if is_model:
+        has_z_up = _lies_along_y(corners, areas) or stands_along_y(corners @ Y_TO_Z, areas)
+    has_y_up = not has_z_up if is_model else stands_along_y(corners, areas)
     if not has_y_up:
         return _around(corners, normals, edges, _ways(), values, has_kinds=has_kinds)
     # As if y were z, and back.

@@ -126,6 +126,8 @@ def by_dimension(mesh: pv.MultiBlock) -> list[pv.MultiBlock]:
     if highest > SURFACE or (highest == SURFACE and min(whole.bounds_size) == 0):
         for key in [key for key in parts if -key[0] == highest - 1]:
             parts[key] = _without_bounds(parts[key], whole)
+    # A point beside others is a reference of a body.
+    parts = {key: part for key, part in parts.items() if -key[0] == highest or part.length}
     for part in parts.values():
         part.field_data.update(mesh.field_data)  # such as the time of a step
     return [parts[key] for key in sorted(parts) if parts[key].n_blocks]

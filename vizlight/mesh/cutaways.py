@@ -121,7 +121,7 @@ def without_corner(
         Mesh with solid cells, which is not changed.
     name : str
         Name of an array of one number per point or per cell. Values of cells are averaged to the
-        points where there is a level; cells at points without a finite value are left out then.
+        points where there is a level; cells at points without a finite value are left out.
     level : float, optional
         Level of the isosurface. Values above it are left, or those below it where fewer of those
         on the outer surface of the volume are. Default: all of the volume is left.
@@ -158,7 +158,7 @@ def without_corner(
     if level is not None:
         volume = _whole(records.averaged(volume, name), name)
     elif name not in volume.cell_data:
-        records.scalars_of(volume, "name", name)
+        volume = _whole(volume, name)
     direction = np.array(_check.vector("toward", toward, direction=True, n=3))
     signs = np.where(np.abs(direction) < ALONG * np.abs(direction).max(), 0, np.sign(direction))
     hull = blocks.outer_surface(volume)[0]

@@ -30,8 +30,9 @@ MEANING = "meaning"
 ANATOMY = {
     "x to the right": "left, right", "y forward": "back, front", "z up": "down, up",
 }  # fmt: skip
-#: Axes of an image that has no place on the earth.
+#: Axes of an image that has no place on the earth, and of one of depths.
 PAGE = ["x to the right", "y up the page"]
+CAMERA = ["x to the right", "y away from the camera", "z up"]
 #: Attributes of an array of a file that are kept.
 KEPT = ("standard_name", "units", "long_name", "cell_methods")
 

@@ -63,17 +63,17 @@ def are_in(mesh: pv.DataSet) -> bool:
     ----------
     mesh : pyvista.DataSet
     """
-    return has_von_mises(mesh) or tensors_of(mesh) is not None
+    return any(map(is_von_mises, mesh.array_names)) or tensors_of(mesh) is not None
 
 
-def has_von_mises(mesh: pv.DataSet) -> bool:
-    """Return whether an array of a mesh has the name of von Mises.
+def is_von_mises(name: str) -> bool:
+    """Return whether an array has the name of von Mises.
 
     Parameters
     ----------
-    mesh : pyvista.DataSet
+    name : str
     """
-    return any("mises" in name.lower() for name in mesh.array_names)
+    return "mises" in name.lower()
 
 
 def with_von_mises(mesh: pv.DataSet, name: str, /) -> pv.DataSet:

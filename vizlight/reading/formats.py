@@ -104,7 +104,12 @@ def _of_mesh(path: Path) -> Mesh | None:
 
 
 def _of_msh(path: Path) -> Mesh | None:
-    """Return a mesh of Abaqus, which may have the suffix of gmsh."""
+    """Return a mesh of Fluent or of Abaqus, which may have the suffix of gmsh, or one of meshio."""
+    if file_parts.first_bytes(path, _INP_HEAD).lstrip().startswith(b"("):
+        zones: Mesh = series.unchecked(
+            pv.get_reader(path, force_ext=".cas")  # type: ignore[no-untyped-call]
+        )
+        return zones
     mesh = _of_inp(path)
     return _by_meshio(path) if mesh is None else mesh
 

@@ -115,13 +115,19 @@ def of_mol2(path: Path) -> pv.PolyData:
     # The counts stand below the name of the molecule.
     lines = [line for line in first.splitlines() if not line.startswith("#")]
     _check_counts(lines[2:3], atoms, bonds)
-    elements = [" ".join(row[5:6]).partition(".")[0] for row in atoms]
+    elements = [_of_type(" ".join(row[5:6])) for row in atoms]
     pairs = _pairs([row[0] for row in atoms], [row[1:3] for row in bonds])
     places = molecules.numbers_of([row[2:5] for row in atoms])
     mesh = molecules.joined(elements, places, pairs, name=" ".join(lines[1:2]))
     if all(len(row) > 8 for row in atoms):
         mesh.point_data["charge"] = molecules.numbers_of([row[8:9] for row in atoms])[:, 0]
     return mesh
+
+
+def _of_type(word: str) -> str:
+    """Return the element of a type of Tripos, such as ``C.ar``, or of Amber's GAFF, as ``ca``."""
+    symbol = word.partition(".")[0]
+    return symbol[: 2 if symbol in ("br", "cl") else 1].upper() if symbol.islower() else symbol
 
 
 def of_mol(path: Path) -> pv.PolyData:

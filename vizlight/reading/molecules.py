@@ -104,7 +104,7 @@ def of_pdb(path: Path) -> pv.PolyData:
     data = path.read_bytes()
     file_parts.warn_of_last_line(path, data)
     lines = data.decode("latin-1").splitlines()
-    ends = [i for i, line in enumerate(lines) if line.startswith("ENDMDL")]
+    ends = _ends_of_states(lines)
     if len(ends) > 1:
         warn_of_states(path, len(ends))
     atoms, places = [], []
@@ -136,6 +136,15 @@ def of_pdb(path: Path) -> pv.PolyData:
         _records(lines),
     )  # fmt: skip
     return mesh
+
+
+def _ends_of_states(lines: Sequence[str]) -> list[int]:
+    """Return the lines after the models of a PDB file, or after states of as many atoms each."""
+    models = [i for i, line in enumerate(lines) if line.startswith("ENDMDL")]
+    ends = [i for i, line in enumerate(lines) if line.rstrip() == "END"]
+    parts = [lines[start:end] for start, end in zip([0, *ends], [*ends, None], strict=True)]
+    counts = {sum(line.startswith(("ATOM", "HETATM")) for line in part) for part in parts[:-1]}
+    return models or (ends if len(counts) == 1 else [])
 
 
 def _name(columns: str, residue: str) -> str:

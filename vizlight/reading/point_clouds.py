@@ -83,7 +83,7 @@ def _cloud(values: dict[str, Raw], *, is_image: bool) -> pv.PolyData:
     if is_image and len(points) and (points[:, 2] > 0).all() and points[-1, 1] > points[0, 1]:
         # By the convention of cameras, y is down and z away from them.
         turn = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], dtype=points.dtype)
-        axes = ["x to the right", "y away from the camera", "z up"]
+        axes = [*meaning.CAMERA]
     mesh = pv.PolyData(points @ turn)
     meaning.attach(mesh, meaning.Meaning(axes=axes))
     if {*_NORMALS} <= {*values}:

@@ -67,10 +67,11 @@ MEASURED = 1 << 16
 
 #: What VTK says of files that are whole: its importer of VRML makes a window that none needs, keys
 #: of ParaView's, of NRRD and ranges of NaN are metadata, conditions at the boundary of CGNS no
-#: cells.
+#: cells and its lists of solutions known without them, and a case of Fluent is a mesh without data.
 _HARMLESS = re.compile(
     "bad X server connection|Could not locate key|Error reading InformationKey|Skipping BC_t node"
-    "|glTF extension .* is used in|Unknown field: '[^:]*:="
+    "|glTF extension .* is used in|Unknown field: '[^:]*:=|Only the case file will be opened"
+    "|FlowSolutionPointers"
 )
 #: Most files of a folder that an error names.
 MOST_NAMED = 8
@@ -248,8 +249,7 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
             meshes = []
         except SystemExit as error:  # so ends meshio where it finds a fault
             reason = f"its reader ended with {error.code}"
-    unread = [match for match in map(_DIRECTIVE.search, errors) if match]
-    errors = _faults(errors)
+    said, errors = errors, _faults(errors)
     if not meshes or not all(isinstance(mesh, pv.DataSet) and mesh.n_points for mesh in meshes):
         reason = f"no points: {errors[0]}" if errors else reason
         if reason.startswith("its overlay"):
@@ -261,7 +261,7 @@ def _read(path: Path, selection: Selection) -> list[pv.DataSet]:
     # After an error VTK gives what it has read so far: a part of a mesh, which looks like a whole.
     if errors:
         raise _damaged(path, errors[0])
-    _warn_of_unread(path, unread)
+    _warn_of_unread(path, said)
     if isinstance(data, pv.MultiBlock):
         notes += _left_out(data, meshes)
     if path.suffix.lower() == ".obj" and wavefront.has_free_form(path):
@@ -451,6 +451,7 @@ def _whole(
     if isinstance(mesh, pv.DataSet):
         normals.drop_empty(mesh)
         _name_in_one_line(mesh)
+        _name_materials(mesh)
         notes += [note] if (note := _rounded(mesh)) else []
     # These formats may have points for each face or colour; an overlay has a row for each point,
     # and keeps them apart.
@@ -511,6 +512,26 @@ def _name_blocks(mesh: pv.DataSet, data: pv.MultiBlock) -> None:
     meaning.attach(mesh, said)
 
 
+def _name_materials(mesh: pv.DataSet) -> None:
+    """Give the materials of OBJ their names.
+
+    Where the first faces have one, VTK gives them the number of faces without a material.
+    """
+    ids = mesh.cell_data.get("MaterialIds")
+    if ids is None or "MaterialNames" not in mesh.field_data:
+        return
+    words: list[str] = np.asarray(mesh.field_data["MaterialNames"]).tolist()
+    if not np.isin(ids, range(len(words))).all():
+        return
+    words = [words[0] if word == "NO_MATERIAL" else word for word in words]
+    kinds = list(dict.fromkeys(words))
+    mesh.rename_array("MaterialIds", "material", preference="cell")
+    mesh.cell_data["material"] = np.array([kinds.index(word) for word in words])[ids]
+    said = meaning.of(mesh)
+    said.add_kinds("material", [(i, word, ()) for i, word in enumerate(kinds)])
+    meaning.attach(mesh, said)
+
+
 def _has_points_outside(mesh: pv.UnstructuredGrid) -> bool:
     """Return whether points of no cell are outside of the box around all cells."""
     corners = np.zeros(mesh.n_points, np.bool_)
@@ -534,8 +555,12 @@ def _arrays(mesh: pv.DataSet) -> set[str]:
     return {name for name in (*mesh.point_data, *mesh.cell_data) if not name.startswith("vtk")}
 
 
-def _warn_of_unread(path: Path, unread: list[re.Match[str]]) -> None:
-    """Warn of fields of an OpenFOAM case that VTK could not read."""
+def _warn_of_unread(path: Path, errors: list[str]) -> None:
+    """Warn of fields of an OpenFOAM case, and of steps of CGNS, that VTK could not read."""
+    if any("FlowSolutionPointers" in error for error in errors):
+        words = "has FlowSolutionPointers that name no solutions: those of one step are read"
+        _check.warn(f"file: '{path}' {words}")
+    unread = [match for match in map(_DIRECTIVE.search, errors) if match]
     if unread:
         fields = ", ".join(f"'{match[1]}' (#{match[2]})" for match in unread)
         _check.warn(
@@ -584,12 +609,12 @@ def _found(path: Path, selection: Selection) -> pv.DataObject:
         contents = formats.read(path, selection.time, at=selection.at, nodata=selection.nodata)
     contents = series.read(path, selection.time) if contents is None else contents
     contents = _by_package(path) if contents is None else contents
-    if path.suffix.lower() in _MESHERS:
+    if path.suffix.lower() in _MESHERS and isinstance(contents, pv.DataSet):
         # As a block it is reduced to its cells of the highest dimension, see
         # :func:`.blocks.one_grid`.
         contents = pv.MultiBlock({"cells of lower dimension": contents})
     if isinstance(contents, pv.MultiBlock):
-        contents = _without_sets(contents, is_fluent=path.suffix.lower() == ".cas")
+        contents = _without_sets(contents)
     if isinstance(contents, pv.PartitionedDataSet):
         data, contents = contents.field_data, pv.MultiBlock(list(contents))
         contents.field_data.update(data)
@@ -600,14 +625,14 @@ def _names(data: pv.MultiBlock) -> list[str]:
     return [str(name) for name in data.keys()]  # noqa: SIM118 - its own loop gives blocks
 
 
-def _without_sets(data: pv.MultiBlock, *, is_fluent: bool) -> pv.MultiBlock:
+def _without_sets(data: pv.MultiBlock) -> pv.MultiBlock:
     """Return the elements of a file of Exodus or Fluent, without sets of their sides and nodes.
 
     Cells of a flat set of sides come twice from VTK's reader of Fluent: in the set, and in the
     whole.
     """
     names = _names(data)
-    chosen = [name for name in names if is_fluent and name.endswith((":fluid", ":solid"))]
+    chosen = [name for name in names if name.endswith((":fluid", ":solid"))]
     if EXODUS[0] in names and any(block.n_cells for block in blocks.all_blocks(data[EXODUS[0]])):
         chosen = [name for name in names if name not in EXODUS[1:]]
     if not chosen:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -20,6 +21,7 @@ SUFFIXES, SEPARATORS = (".csv", ".tsv"), ",;\t"
 _PLACES = (
     ("x", "y", "z"), ("points:0", "points:1", "points:2"), ("points_0", "points_1", "points_2"),
     ("x coordinate", "y coordinate", "z coordinate"), ("easting", "northing", ""),
+    ("initial x", "initial y", "initial z"), ("xc", "yc", "zc"),
 )  # fmt: skip
 _DEGREES = (("longitude", "latitude", ""), ("lon", "lat", ""), ("long", "lat", ""),
             ("lng", "lat", ""))  # fmt: skip
@@ -28,6 +30,8 @@ _UNIT = re.compile(r"\s*[(\[].*$")
 _MISSING = {"", "na", "n/a", "nan", "null", "none", "-"}
 #: Least rows in the mean of a kind that a column of text names.
 LEAST_OF_KIND = 2
+#: Most columns that an error names, and most letters of a name in it.
+NAMED = 16
 #: Name of a first column without one, by which data frames number their rows, and the name that
 #: they give to it when they read it again.
 INDEX, _UNNAMED = "index", re.compile(r"(Unnamed: 0)?")
@@ -46,7 +50,7 @@ def read(path: Path) -> pv.PolyData:
     usual = (*_PLACES, *_DEGREES, *_longitudes(plain))
     places = next((names for names in usual if {*names[:2]} <= {*plain}), None)
     if places is None:
-        there = ", ".join(map(repr, [*columns, *texts]))
+        there = ", ".join(repr(name[:NAMED]) for name in [*columns, *texts][:NAMED])
         raise ValueError(
             f"its first line has no names of places (x, y, z or lon, lat) but {there}; name them so"
         )
@@ -128,19 +132,23 @@ def _columns(
 ) -> tuple[dict[str, Array], dict[str, AnyArray], list[str]]:
     """Return the columns of numbers and those of text by their names, and lines at the end.
 
-    ``named`` says whether the first line has names.
+    ``named`` says whether the first line has names; in a file of CFX these follow ``[Data]``.
     """
     with path.open(encoding="utf-8-sig", newline="", errors="replace") as file:
         first = file.readline()
+        is_of_cfx = first.startswith("[")
+        if is_of_cfx and any(line.startswith("[Data]") for line in file):
+            first = file.readline()
         separator = max(SEPARATORS, key=first.count)
         form: Foreign = {"delimiter": separator, "skipinitialspace": True}
         names = next(csv.reader([first.lstrip("# ")], **form), [])
-        rows = [row for row in csv.reader(file, **form) if any(map(str.strip, row))]
+        lines = itertools.takewhile(lambda line: not (is_of_cfx and line.startswith("[")), file)
+        rows = [row for row in csv.reader(lines, **form) if any(map(str.strip, row))]
     if not named:
         rows = [names, *rows]
         single = len(names) == 1
         names = [path.stem if single else f"{path.stem} {i + 1}" for i in range(len(names))]
-    rows, lines = _without_end(rows, separator)
+    rows, ends = _without_end(rows, separator)
     if rows and all(len(row) == len(names) + 1 and not row[-1].strip() for row in rows):
         # Some programs end each row, but not the first line, by a separator.
         rows = [row[:-1] for row in rows]
@@ -160,7 +168,7 @@ def _columns(
             texts[name.strip()] = np.array(cells)
         else:
             columns[name.strip() or f"column {i + 1}"] = values
-    return columns, texts, lines
+    return columns, texts, ends
 
 
 def _without_end(rows: list[list[str]], separator: str) -> tuple[list[list[str]], list[str]]:

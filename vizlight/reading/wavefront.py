@@ -22,6 +22,8 @@ _CORNERS = re.compile(rb"(?m)^[ \t]*[fl][ \t].*")
 _SLASHES = re.compile(rb"(?<=\d)/+(?=[ \t\r\n]|\Z)")
 #: A curve of the first degree, which is a polyline.
 _STRAIGHT = re.compile(rb"(?m)^(cstype\s+bspline\s*\ndeg\s+1\s*\n)curv\s+\S+\s+\S+\s")
+#: A point with a weight, which counts for curves alone.
+_WEIGHT = re.compile(rb"(?m)^([ \t]*v(?:[ \t]+[^\s#]+){3})[ \t]+[^\s#]+(?=[ \t\r]*$)")
 _FREE_FORM = re.compile(rb"(?m)^(curv2?|surf)\s")
 
 
@@ -33,11 +35,11 @@ def has_free_form(path: Path) -> bool:
 def read(path: Path) -> pv.DataSet | None:
     """Return the mesh of an OBJ file that VTK's reader does not take as it is, else None.
 
-    It leaves out colours of points and curves of the first degree, ends the process at texture
-    coordinates that are missing, and stops at a slash without a number.
+    It leaves out colours of points and curves of the first degree, takes weights for colours, ends
+    the process at texture coordinates that are missing, and stops at a slash without a number.
     """
     whole = path.read_bytes()
-    data = _STRAIGHT.sub(rb"\1l ", whole)
+    data = _WEIGHT.sub(rb"\1", _STRAIGHT.sub(rb"\1l ", whole))
     if _SLASHES.search(data):
         data = _CORNERS.sub(lambda line: _SLASHES.sub(b"", line[0]), data)
     count = len(re.findall(rb"(?m)^[ \t]*vt\s", data))

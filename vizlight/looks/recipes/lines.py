@@ -170,16 +170,16 @@ def is_tree(mesh: pv.DataSet) -> bool:
 
 
 def _somas(case: Case) -> list[Layer]:
-    """Return the layer of a ball at each point of a cell body."""
+    """Return the layer of a ball at each point of a cell body, none where all points are of one."""
     mesh = case.data.run()
-    kinds = mesh.point_data.get("type")
-    if not is_tree(mesh) or kinds is None or not np.any(np.asarray(kinds) == neurons.SOMA):
+    bodies = np.asarray(mesh.point_data.get("type", ())) == neurons.SOMA
+    if not is_tree(mesh) or not bodies.any() or bodies.all():
         return []
     ends = (neurons.SOMA - 0.5, neurons.SOMA + 0.5)
     points = Step("", ".cast_to_poly_points", case.data)
-    bodies = Step("", ".threshold", points, ends, scalars="type")
+    of_body = Step("", ".threshold", points, ends, scalars="type")
     ball = Step("", "pyvista.Sphere", radius=1.0)
-    balls = Step("soma", ".glyph", bodies, orient=False, scale="radius", factor=1.0, geom=ball)
+    balls = Step("soma", ".glyph", of_body, orient=False, scale="radius", factor=1.0, geom=ball)
     return [case.inked(balls)]
 
 
@@ -202,6 +202,10 @@ def molecule(case: Case, size: float = 1.0) -> Drawing:
     if array.name == "radius":
         # Balls have it as their size alone.
         return lines(case)
+    dry, note = _without_water(atoms)
+    if note:
+        drawing = molecule(replace(case, data=dry, contents=Contents(dry.run())), size)
+        return replace(drawing, notes=[*drawing.notes, note])
     bonds = atoms
     if array.role == "kinds":
         bonds = Step("halves", "files.surface_of", atoms, labels=array.name)
@@ -233,6 +237,19 @@ def molecule(case: Case, size: float = 1.0) -> Drawing:
         # Symbols of elements need no title.
         keys = [key | {"title": title} for key in keys]
     return replace(drawing, layers=[*drawing.layers, *case.strokes([cell])], keys=keys)
+
+
+def _without_water(atoms: Step) -> tuple[Step, str]:
+    """Return the step that takes the atoms beside those of water, and a note on these."""
+    counts = molecules.beside_chains(atoms.run())
+    names = meaning.flags(atoms.run(), molecules.RESIDUE)
+    water = [number for number, name in names.items() if name in molecules.WATERS & set(counts)]
+    if len(water) != 1 or len(names) == 1:
+        return atoms, ""
+    ends, name = (water[0] - 0.5, water[0] + 0.5), names[water[0]]
+    dry = Step("dry", ".threshold", atoms, ends, invert=True, scalars=molecules.RESIDUE)
+    dry = Step("dry", ".extract_surface", dry, algorithm="dataset_surface")
+    return dry, f"left out: {name} ({counts[name]} atoms)"
 
 
 def _molecule_named(atoms: Step) -> str:

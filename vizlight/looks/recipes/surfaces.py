@@ -11,7 +11,7 @@ import scipy
 
 from vizlight.draw.ticks import USUAL, even_levels
 from vizlight.filters.fur import LENGTH
-from vizlight.looks.contents import Contents, kinds_of
+from vizlight.looks.contents import SAMPLE, WHITE, Contents, is_of_kinds, kinds_of
 from vizlight.looks.ranges import Range
 from vizlight.looks.recipes.drawing import (
     BESIDE,
@@ -40,7 +40,7 @@ from vizlight.vtk.cells import dimensions
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Keywords
+    from vizlight._types import Keywords, Raw
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
@@ -53,6 +53,8 @@ FAINT, BEFORE = 0.35, {"color": "#8a8a8a"}
 #: Length in pixels from which isolines on a solid are long, least share of their length in long
 #: ones, and least distance between them in pixels.
 LONG, SMOOTH, APART = 100.0, 0.9, 30.0
+#: Largest share of a step by which multiples of it differ from whole ones.
+ROUNDING = 0.05
 #: Largest area of a cell of a plane in the least from which on sizes are shown, and share of the
 #: plane that the lesser half of its cells covers below which the rest is far around them.
 GRADED, FAR_FIELD = 100, 0.02
@@ -75,7 +77,9 @@ def values(case: Case) -> Drawing:
             # The surface of a single label is a shape.
             shape = replace(case, question="shape", data=mesh)
             drawing = surface(shape)
-            keys = _keys(shape, drawing.scene, f"{titled(mesh.run(), array.name)} {kinds[0]:g}")
+            # Alone in its file, the number of a label tells nothing.
+            number = f" {kinds[0]:g}" * (array.distinct > 2)
+            keys = _keys(shape, drawing.scene, titled(mesh.run(), array.name) + number)
             return replace(drawing, words=f"surface of {array.name} {kinds[0]:g}", keys=keys)
         inner = _inside(case, array, kinds) if len(kinds) == 1 else None
         if inner is not None:
@@ -114,7 +118,8 @@ def values(case: Case) -> Drawing:
             rows, np.round(rows), equal_nan=True
         )
         is_picture = is_whole and array.low >= 0 and is_tone
-        is_gray = case.is_of_body or is_picture or (is_whole and is_photograph)
+        is_scan = is_photograph and (is_whole or _are_steps(rows))
+        is_gray = case.is_of_body or is_picture or is_scan
         cmap = "gray" if is_gray else LIGHTNESS
         kind = {"amounts": case.is_of_earth and not is_gray, "scan": is_picture and is_band}
         keywords, note = case.ranged_of(mesh, array, cmap, **kind)
@@ -265,6 +270,15 @@ def _keys(case: Case, scene: Step, title: str) -> list[Keywords]:
     return [{"scene": scene, "title": title}]
 
 
+def _are_steps(rows: Raw) -> bool:
+    """Return whether numbers are multiples of one step, as those of a scanner by its scale."""
+    sample = rows[:: max(len(rows) // SAMPLE, 1)]
+    steps = np.diff(np.unique(sample[np.isfinite(sample)]).astype(np.float64))
+    parts = steps / steps.min(initial=np.inf)
+    is_even = np.abs(parts - np.round(parts)) < ROUNDING
+    return bool(len(parts) and is_even.all() and parts.sum() <= WHITE[-1])
+
+
 def _size_of(case: Case) -> str:
     """Return the sizes of the box of a part that is alone, with their unit if one is known."""
     is_alone = case.in_room and case.wishes.frame is None
@@ -310,7 +324,9 @@ def plane(case: Case) -> Drawing:
     layers = [Layer(mesh, {"scene": scene} | drawn), *outline]
     constants = case.contents.constants.items()
     title = ", ".join(
-        titled(case.data.run(), name, value=value) for name, value in constants if value is not None
+        titled(case.data.run(), name, value=value)
+        for name, value in constants
+        if value is not None and not is_of_kinds(name)
     )
     title = title or file_named(mesh)
     keys = [TITLE_ALONE | {"title": title}] if title else ()

@@ -19,6 +19,7 @@ from vizlight.looks.recipes.drawing import ON_SURFACES, Doubt, Drawing, Layer, r
 from vizlight.looks.steps import Step
 from vizlight.mesh import meaning, montages
 from vizlight.reading import density_maps, molecules
+from vizlight.vtk.cells import dimensions
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
@@ -70,8 +71,8 @@ MOST_OF_CUT, LEAST_OF_CUT = (10, 90), 0.1
 #: point out of it.
 CLEAR = {"opacity": 0.5, "culling": "back"}
 OUTWARD = {"auto_orient_normals": True, "split_vertices": False, "cell_normals": False}
-#: Most pieces of an isosurface, where none has this share of it.
-MOST_PIECES, LARGE = 50, 0.3
+#: Most pieces of an isosurface, where none has this share of it; share of one that is sure.
+MOST_PIECES, LARGE, DUST = 50, 0.3, 0.01
 #: Radians in a pixel from which the normals of an isosurface may turn too fast, and how they are
 #: computed for that.
 ROUGH = 0.1
@@ -103,9 +104,11 @@ def isosurface(case: Case) -> Drawing:
     if case.wishes.question == "auto" and _is_stack(case, array):
         # A sheet of slices has no place among other meshes.
         return stack(case) if case.wishes.frame is None else slices(case)
-    level = _level(case, array)
     # Where values are shown there is room for their key.
     valued = replace(case, question="value")
+    if case.wishes.question == "auto" and case.is_of_body and _is_slab(case.data.run()):
+        return slices(valued)
+    level = _level(case, array)
     if isinstance(level, str):
         return _cut_open(valued) or slices(valued, level)
     if not level.is_sure and case.is_of_body and _are_low_inside(case, array, level.at):
@@ -116,7 +119,8 @@ def isosurface(case: Case) -> Drawing:
     has_molecule = molecules.PLACES in case.data.run().field_data
     if has_molecule:
         mesh = Step("outward", ".compute_normals", mesh, **OUTWARD)
-    if not level.is_sure and _is_crumbs(mesh.run()):
+    is_one = case.wishes.question == "auto" and not isinstance(level.at, tuple)
+    if is_one and _is_crumbs(mesh.run(), DUST if level.is_sure else LARGE):
         return _cut_open(valued) or slices(valued, "; isosurfaces are crumbs")
     # One that is asked for besides is shown on it.
     second = case.contents.named(str(case.wishes.picture.get("scalars") or ""))
@@ -206,9 +210,11 @@ def _level(case: Case, array: Named) -> _Level | str:
 def _are_low_inside(case: Case, array: Named, level: float | tuple[float, float]) -> bool:
     """Return whether an isosurface encloses the lesser part of a scan, of low values.
 
-    What it would show of a body is a gap.
+    What it would show of a body is a gap, unless the others are one value, as of statistics.
     """
-    return not isinstance(level, tuple) and bool(np.mean(_sample(case, array) > level) > MOSTLY)
+    values = _sample(case, array)
+    is_gap = np.mean(values > level) > MOSTLY > np.mean(values == values.max())
+    return not isinstance(level, tuple) and bool(is_gap)
 
 
 def _size_of_both_signs(values: Array, volume: Step, array: Named) -> float | None:
@@ -307,12 +313,12 @@ def _without_debris(mesh: Step, notes: list[str]) -> Step:
     return Step("pieces", ".connectivity", mesh, "specified", list(range(kept)))
 
 
-def _is_crumbs(mesh: pv.DataSet) -> bool:
-    """Return whether an isosurface is in many pieces of which none is large."""
+def _is_crumbs(mesh: pv.DataSet, large: float = LARGE) -> bool:
+    """Return whether an isosurface is in many pieces of which none has a large share of it."""
     if not mesh.n_cells:
         return False
     sizes = np.bincount(piece_numbers(mesh))
-    return len(sizes) > MOST_PIECES and sizes.max() < LARGE * sizes.sum()
+    return len(sizes) > MOST_PIECES and sizes.max() < large * sizes.sum()
 
 
 def _is_rough(case: Case, mesh: Step, camera: Step) -> bool:
@@ -331,7 +337,9 @@ def slices(case: Case, why: str = "") -> Drawing:
     drawing = _of_cut(case, cut, outside, camera, case.data)
     first, *strokes = drawing.layers
     faces = replace(case, data=outside, contents=Contents(outside.run()))
-    layers = [first, Layer(outside, first.keywords), *strokes, *case.strokes([faces.creases])]
+    # Of what is hollow the faces of the cut may be empty.
+    both = [each for each in (first, Layer(outside, first.keywords)) if each.mesh.run().n_points]
+    layers = [*both, *strokes, *case.strokes([faces.creases])]
     words = f"slices of {array.name} through the middle, around the corner toward the eye{why}"
     return replace(drawing, layers=[*layers, *case.boxed(box, camera)], words=words)
 
@@ -516,6 +524,12 @@ def _has_bones(values: Array) -> bool:
     """Return whether a scan has much air and some bone by the numbers of computed tomography."""
     bones = float(np.mean(values > BONE))
     return float(np.mean(_is_air(values))) > MUCH_AIR and BONES[0] < bones < BONES[1]
+
+
+def _is_slab(mesh: pv.DataSet) -> bool:
+    """Return whether an image has many voxels along two axes, and few along the other."""
+    least, middle, _ = sorted(dimensions(mesh)) or (0, 0, 0)
+    return least <= VOXELS < middle
 
 
 def _is_scan(case: Case, array: Named) -> bool:
