@@ -72,7 +72,7 @@ def test_a_hollow_is_looked_into():
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_the_side_that_shows_most_kinds_is_seen(sign):
     # Small parts on one side of a block.
-    parts = [pv.Box((0, 8, 0, 6, 0, 5))]
+    parts = [pv.Box((0, 8, 0, 6, 0, 5), level=8)]
     parts += [pv.Sphere(radius=0.6, center=(x, 3 + 3.2 * sign, 2.5)) for x in (1.5, 4, 6.5)]
     for kind, part in enumerate(parts):
         part.clear_data()

@@ -45,7 +45,7 @@ def several_views(
     names : sequence of str
         Names of the blocks.
     around : mesh, optional
-        Mesh whose size is the room of a view, such as that of which ``mesh`` is a part. Default:
+        Mesh that fills the room of a view, such as that of which ``mesh`` is a part. Default:
         the mesh itself.
     aspect : float, default: 1.6
         Width over height of the place for all views, by which they stand in rows.

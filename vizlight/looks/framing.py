@@ -42,6 +42,8 @@ CREASED = 0.3
 CLOSED = 0.1
 #: Least distance between the distributions of values on two sides that are both shown.
 OTHER = 0.15
+#: Share of the area of a kind up to which it is not seen.
+GLIMPSE = 0.03
 #: Power of the length of a body across the picture, over that in space, by which a view counts.
 ACROSS = 2
 #: How much more a view counts in which vectors run to the right.
@@ -560,8 +562,11 @@ def eye_opposite(
     if values is None:
         return None
     values = values if values.ndim == 1 else np.linalg.norm(values, axis=1)
-    all_seen = np.isin(values, values[front]).all()
-    if all_seen if has_kinds else apart(values, areas * front, areas * ~front) < OTHER:
+    if has_kinds:
+        is_alike = _shares_of_kinds(values, areas * front, areas).min() > GLIMPSE
+    else:
+        is_alike = apart(values, areas * front, areas * ~front) < OTHER
+    if is_alike:
         return None
     toward, up = toward / np.linalg.norm(toward), up / np.linalg.norm(up)
     height = (toward @ up) * up
@@ -634,7 +639,7 @@ def _seen(
     """Return the area that an eye at infinity sees, by how much of a picture it fills.
 
     Of values, the area counts up to twice where their spread in the picture is that of all, and of
-    kinds by the share of them that is seen.
+    kinds by the mean share of each that is seen.
     """
     right, up = _plane(way)
     # Open surfaces are seen from both sides.
@@ -646,13 +651,20 @@ def _seen(
         front = front * np.isfinite(values)
         seen = float(front.sum())
         if has_kinds:
-            seen *= len(np.unique(values[front > 0])) / len(np.unique(values))
+            seen *= float(_shares_of_kinds(values, front, areas).mean())
         else:
             spread = _spread(values, front * cosines) / (_spread(values, areas) or 1.0)
             seen *= 1 + min(spread, 1.0)
     rows = corners.reshape(-1, 3)
     tall = max(np.ptp(rows @ up), np.ptp(rows @ right) / ASPECT)
     return seen * math.sqrt((front * cosines).sum()) / (float(tall) or 1.0)
+
+
+def _shares_of_kinds(values: Array, front: Array, areas: Array) -> Array:
+    """Return the share of the area of each kind that is in front."""
+    kinds = np.unique(values, return_inverse=True)[1].reshape(-1)
+    shares: Array = np.bincount(kinds, front) / np.maximum(np.bincount(kinds, areas), 1e-300)
+    return shares
 
 
 def _spread(values: Array, weights: Array) -> float:

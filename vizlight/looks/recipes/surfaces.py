@@ -160,7 +160,8 @@ def _notes_on_kinds(case: Case, mesh: Step, key: Keywords) -> tuple[list[str], l
         shown = kinds_of(mesh.run(), array.name, MOST_IN_KEY)
     if rest := count - len(shown):
         notes.append(f"{array.name} has {count} kinds: the {rest} smallest are grey")
-        return notes, [key | {"title": f"{title}; grey: {rest} small ones"}]
+        small = f"{rest} small {'one' if rest == 1 else 'ones'}"
+        return notes, [key | {"title": f"{title}; grey: {small}"}]
     if count > MOST_IN_KEY:
         notes.append(f"{array.name} has {count} kinds: colours repeat, and have no key")
         return notes, [key | TITLE_ALONE | {"title": f"{title}; {count} kinds"}]
