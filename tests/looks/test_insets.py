@@ -74,6 +74,16 @@ def test_a_flow_has_the_section_in_which_it_runs():
     assert apart_by > 0
 
 
+def test_a_flow_without_speeds_has_a_grey_section():
+    around = block(lambda x, y, z: (8 - y, x - 10, 0.1 + 0 * z))
+    around["values"] /= np.linalg.norm(around["values"], axis=1)[:, np.newaxis]
+    names, look = shown(around)
+    assert names == ["Section z = 6"]
+    section = look.drawing.insets[0].keywords
+    assert "color" in section
+    assert "scalars" not in section
+
+
 def test_a_solid_has_a_section_where_it_shows_other_values():
     pipe = pv.CylinderStructured(
         radius=np.linspace(0.1, 1, 8), height=5, theta_resolution=30, z_resolution=20

@@ -251,13 +251,15 @@ def make_plotter(
             room *= plotter.renderer.GetSize()[0] / LETTER / max(map(len, bar.splitlines()))
             letters = int(min(2 * em, room))
             scalar_bar = plotter.add_scalar_bar(  # type: ignore[call-arg]
-                title=f"{bar}\n",  # with a gap between the title and the numbers
+                title=bar,
                 mapper=mapper, color=ink, n_labels=3, fmt="%.1f", vertical=True,
                 height=0.7, width=width, position_x=left, position_y=0.12,
                 title_font_size=letters, label_font_size=letters, unconstrained_font_size=True,
             )  # fmt: skip
             if any(panel.scalars + VALID in mesh.point_data for mesh in all_blocks(panel.mesh)):
                 name_no_data(scalar_bar)
+            # With a gap between the title and the numbers.
+            scalar_bar.SetTitle(f"{bar}\n")
     except BaseException:
         # A plotter that nobody gets would keep its window and the memory of its pictures.
         plotter.close()

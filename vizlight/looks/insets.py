@@ -255,13 +255,15 @@ def _thinner(keywords: Keywords, scale: float) -> Keywords:
 
 def _of_section(case: Case, drawing: Drawing, section: Step, pixel: float) -> list[Layer]:
     """Return the layers of a section in the colours of the main view, with isolines or strokes."""
-    colored = next(layer.keywords for layer in drawing.layers if "scalars" in layer.keywords)
-    shown = {name: colored[name] for name in COLORS if name in colored}
-    array = case.needed_array
+    array, shown = case.needed_array, dict[str, object](color=surfaces.LIGHT_GREY)
+    for layer in drawing.layers:
+        if "scalars" in layer.keywords:
+            shown = {name: layer.keywords[name] for name in COLORS if name in layer.keywords}
+            if shown["scalars"] not in section.run().array_names:
+                # Lines have a speed of their own, which a plotter takes from vectors.
+                shown["scalars"] = array.name
+            break
     scene = even_light(drawing.camera)
-    if shown["scalars"] not in section.run().point_data:
-        # Lines have a speed of their own, which a plotter takes from vectors.
-        shown["scalars"] = array.name
     layers = [Layer(section, shown | {"scene": scene, "show_scalar_bar": False})]
     for layer in drawing.layers:
         if layer.mesh.name == "isolines":

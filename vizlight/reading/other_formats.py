@@ -6,7 +6,6 @@ import re
 from pathlib import Path
 
 from vizlight._words import message
-from vizlight.reading import file_parts
 
 #: Ends of names of packed files, which are read if the file in them is.
 PACKED = (".gz", ".bz2", ".xz", ".zip")
@@ -89,7 +88,8 @@ def of_content(path: Path) -> str:
     heads = next((heads for ends, heads in CONTENTS.items() if suffix in ends), ())
     if not heads or not path.is_file():
         return ""
-    begin = file_parts.first_bytes(path, _HEAD)
+    with path.open("rb") as file:
+        begin = file.read(_HEAD)
     way = next((way for pattern, way in heads if pattern.match(begin)), "")
     return way.replace("{name}", path.name).replace("{stem}", path.stem)
 
@@ -106,8 +106,10 @@ def check(path: Path) -> None:
     """Raise ValueError for a file of a known format that no reader takes, before any is loaded."""
     suffix = path.suffix.lower()
     is_other = suffix not in PACKED and any(suffix in ends for ends in WAYS)
-    # GRIB files have names of any end.
-    if not is_other or not path.is_file() or file_parts.first_bytes(path, 4) == b"GRIB":
+    if not is_other or not path.is_file():
         return
+    with path.open("rb") as file:
+        if file.read(4) == b"GRIB":  # whose names have any end
+            return
     got = f"'{path}' ({reason(path)})"
     raise ValueError(message("file", "a mesh that PyVista reads", got))
