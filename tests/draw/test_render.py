@@ -382,7 +382,7 @@ def test_a_bar_beside_several_panels_takes_the_width_of_none():
     lit = vizlight.illuminate(pv.Sphere(), vizlight.Scene())
     plotter = render.make_plotter([lit, lit, lit, lit], rows=2, bar="luminance", size=(500, 300))
     # Nine letters of its title have room in a column of 65 pixels.
-    assert plotter.scalar_bars["luminance\n"].GetLabelTextProperty().GetFontSize() == 11
+    assert plotter.scalar_bars["luminance"].GetLabelTextProperty().GetFontSize() == 11
     views = [renderer.GetViewport() for renderer in plotter.renderers]
     bars = [
         any(prop.IsA("vtkScalarBarActor") for prop in renderer.actors.values())
