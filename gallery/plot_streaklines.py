@@ -48,7 +48,7 @@ frames = vizlight.pathlines(
     model="cylinder", step=0.6, tail=4,
 )  # fmt: skip
 
-plotter = pv.Plotter(off_screen=True, window_size=(1000, 440))
+plotter = pv.Plotter(off_screen=True, window_size=(880, 387))
 plotter.background_color = "#14181d"
 plotter.enable_anti_aliasing("ssaa")
 plotter.camera = camera
@@ -61,7 +61,7 @@ for number, lines in enumerate(frames):
     lines["age"] = lines.field_data["TimeValue"][0] - lines["Time"]
     lit = vizlight.tint(lines, "age", **aged)
     actor = plotter.add_mesh(
-        lit, scalars="rgb", rgb=True, lighting=False, line_width=3.2, name="smoke", render=False
+        lit, scalars="rgb", rgb=True, lighting=False, line_width=2.8, name="smoke", render=False
     )
     if not number:
         table = pv.LookupTable(aged["cmap"], scalar_range=aged["clim"])
