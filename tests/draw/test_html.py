@@ -364,6 +364,12 @@ def test_plotter_writes_its_meshes_with_their_own_light(tmp_path):
     plotter = pv.Plotter(off_screen=True)
     with pytest.raises(ValueError, match="plotter: expected a mesh with live light"):
         plotter.vizlight.export_html(tmp_path / "a.html")
+    # A frame without light would be all that is left of a lit cube.
+    plotter.add_mesh(pv.Cube())
+    plotter.add_mesh(pv.Disc(), lighting=False)
+    with pytest.raises(ValueError, match="got none and 1 in the light of PyVista"):
+        plotter.vizlight.export_html(tmp_path / "a.html")
+    plotter.clear()
     plotter.vizlight.add_mesh(torus(), scene=Scene(lights=FAR, material=SHINY), scalars="height")
     plotter.vizlight.add_mesh(winding(), scene=Scene(**HEADLIT), line_width=3, name="coil")
     plotter.add_mesh(pv.Cube())

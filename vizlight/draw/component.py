@@ -409,7 +409,7 @@ class Component:
         RuntimeError
             If the plotter is closed.
         ValueError
-            If no mesh has live light.
+            If no mesh has live light, and none is drawn without light or some are lit by PyVista.
 
         Warns
         -----
@@ -488,7 +488,7 @@ class Component:
         Raises
         ------
         ValueError
-            If the plotter has none.
+            If the plotter has none, or surfaces in the light of PyVista beside what has no light.
 
         Warns
         -----
@@ -502,10 +502,12 @@ class Component:
             PageMesh((light.name or f"mesh {i}") if actor.GetPickable() else "", light, actor)
             for i, (light, actor) in enumerate(lit, 1)
         ] + [PageMesh("", None, actor) for actor in visible if self._is_unlit(actor)]
-        if not visible_meshes:
+        others = len(visible) - len(visible_meshes)
+        if not visible_meshes or (others and not lit):
+            got = f"none and {others} in the light of PyVista" if others else "none"
             remedy = "add a mesh by plotter.vizlight.add_mesh"
-            raise _check.value_error("plotter", "a mesh with live light", "none", remedy)
-        if others := len(visible) - len(visible_meshes):
+            raise _check.value_error("plotter", "a mesh with live light", got, remedy)
+        if others:
             _check.warn(f"{others} actors in the light of PyVista are not in the page")
         # Until its first picture a plotter of PyVista has no view of its data, and a page takes
         # none.
