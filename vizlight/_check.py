@@ -326,6 +326,13 @@ def text(name: str, value: object, *, expected: str = "text") -> str:
     return str(value)
 
 
+def texts(name: str, value: object, count: int) -> list[str]:
+    """Return a number of texts."""
+    if not isinstance(value, list | tuple) or len(value) != count:
+        raise value_error(name, f"{count} text{'s' * (count != 1)}", describe(value))
+    return [text(name, each) for each in value]
+
+
 def path(name: str, value: object) -> Path:
     """Return a path of valid characters that is not empty."""
     expected = "the path of a file"

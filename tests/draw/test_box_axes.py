@@ -78,7 +78,7 @@ def test_what_is_no_box_is_refused():
         box_axes(3, camera, HEIGHT, size=SIZE)
     with pytest.raises(ValueError, match="height"):
         box_axes(pv.Box(), camera, 0, size=SIZE)
-    with pytest.raises(ValueError, match="names: expected three texts"):
+    with pytest.raises(ValueError, match="names: expected 3 texts"):
         box_axes(pv.Box(), camera, HEIGHT, size=SIZE, names=["x", "y"])
     lost = pv.PolyData(np.array([[0.0, 0, 0], [np.inf, 1, 1]]))
     with pytest.raises(ValueError, match="mesh"):
@@ -149,7 +149,7 @@ def test_names_take_the_place_of_those_of_blocks():
     )
     assert given.n_cells == 2 * own.n_cells
     assert not none.n_cells
-    with pytest.raises(ValueError, match="names: expected a name for each of the 1 blocks"):
+    with pytest.raises(ValueError, match="names: expected 1 text, got"):
         module.captions(blocks, camera, HEIGHT, size=SIZE, names=["a", "b"])
 
 

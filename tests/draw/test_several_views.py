@@ -121,7 +121,7 @@ test_places_that_are_none_are_refused = refusals(
 test_views_that_are_none_are_refused = refusals(
     lambda mesh, views, options: several_views(mesh, views, **options),
     (pv.Sphere(), [], {"names": ()}, "views: expected directions toward the eye"),
-    (pv.Sphere(), BOTH, {"names": ("a",)}, "names: expected 2 names"),
+    (pv.Sphere(), BOTH, {"names": ("a",)}, "names: expected 2 texts"),
     (pv.Sphere(), BOTH, {"names": ("a", "a")}, "names: expected names that differ"),
     (pv.Sphere(), BOTH, {"names": NAMES, "up": [(0, 0, 1)]}, "up: expected 2 directions"),
     (pv.Sphere(), BOTH, {"names": NAMES, "aspect": 0.0}, "aspect"),

@@ -68,10 +68,7 @@ def box_axes(
         are not three texts.
     """
     box = _box_of(mesh)
-    every: object = names
-    if not isinstance(every, list | tuple) or len(every) != 3:
-        raise _check.value_error("names", "three texts", _check.describe(names))
-    names = [_check.text("names", name) for name in every]
+    names = _check.texts("names", names, 3)
     height, size = _check.positive("height", height), _check.positive("size", size)
     eye = _Eye(camera, height)
     parts = [part for axis in range(3) for part in _along(box, axis, names[axis], eye, size)]
@@ -150,16 +147,15 @@ def captions(
     _check.instance("meshes", meshes, Mesh, "a PyVista mesh")
     blocks_of = [("", meshes)]
     if isinstance(meshes, pv.MultiBlock) and names != ():
-        blocks_of = [*zip(_names_of(meshes, names), meshes, strict=True)]
+        words = _check.texts("names", meshes.keys() if names is None else names, len(meshes))
+        blocks_of = [*zip(words, meshes, strict=True)]
     height, size = _check.positive("height", height), _check.positive("size", size)
     unit = _check.text("unit", unit)
     expected = f"two words for each of the {len(blocks_of)} blocks"
     pairs: object = ends
     if not isinstance(pairs, list | tuple) or len(pairs) not in (0, len(blocks_of)):
         raise _check.value_error("ends", expected, _check.describe(ends))
-    if not all(isinstance(pair, list | tuple) and len(pair) == 2 for pair in pairs):
-        raise _check.value_error("ends", expected, _check.describe(ends))
-    ends = [[_check.text("ends", word) for word in pair] for pair in ends]
+    ends = [_check.texts("ends", pair, 2) for pair in pairs]
     eye = _Eye(camera, height)
     parts = list[tuple["Array", "Indices"]]()
     for i, (name, mesh) in enumerate(blocks_of):
@@ -167,15 +163,6 @@ def captions(
         is_last = i == len(blocks_of) - 1
         parts += _around(mesh, str(name), below, unit * is_last, eye, size)
     return blocks.polydata(*letters.union(parts)) if parts else pv.PolyData()
-
-
-def _names_of(meshes: pv.MultiBlock, names: object) -> list[str]:
-    """Return the names of blocks, those that are given or their own."""
-    words: object = meshes.keys() if names is None else names
-    if not isinstance(words, list | tuple) or len(words) != len(meshes):
-        expected = f"a name for each of the {len(meshes)} blocks"
-        raise _check.value_error("names", expected, _check.describe(names))
-    return [_check.text("names", word) for word in words]
 
 
 def _around(

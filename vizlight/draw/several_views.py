@@ -67,7 +67,9 @@ def several_views(
     ['front', 'top']
     """
     _check.instance("mesh", mesh, Mesh, "a PyVista mesh")
-    turns, words = _turns(views, up), _names(names, len(views))
+    turns, words = _turns(views, up), _check.texts("names", names, len(views))
+    if len({*words}) < len(words):
+        raise _check.value_error("names", "names that differ", _check.describe(names))
     whole = mesh if around is None else around
     _check.instance("around", whole, Mesh, "a PyVista mesh")
     centre = np.reshape(common_bounds("around", [whole]), (3, 2)).mean(axis=1)
@@ -181,16 +183,6 @@ def _turns(views: object, up: object) -> list[Array]:
         raise _check.value_error("up", f"{len(ways)} directions", _check.describe(up))
     ways = [_check.unit("views", way) for way in ways]
     return [axes_of(way, upward) for way, upward in zip(ways, ups, strict=True)]
-
-
-def _names(names: object, count: int) -> list[str]:
-    words: Foreign = names
-    if not isinstance(words, list | tuple) or len(words) != count:
-        raise _check.value_error("names", f"{count} names", _check.describe(names))
-    words = [_check.text("names", word) for word in words]
-    if len({*words}) < count:
-        raise _check.value_error("names", "names that differ", _check.describe(names))
-    return list(words)
 
 
 def _box(mesh: Mesh, axes: Array, centre: Array) -> Array:

@@ -56,10 +56,6 @@ ASPECT = 1.2
 SPLATS = 8000
 #: Number of triangles by which the light of the visible surface is measured.
 SEEN = 1000
-#: Thickness of a surface over its middle side up to which it has two sides, and deviation between
-#: their values, in that of all, from which one side does not tell of the other. They are compared
-#: in this number of squares each way.
-FLATTENED, DIFFERENT, SQUARES = 0.7, 0.5, 12
 #: Turn that takes y to z.
 Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 #: Shares of the height within which points are a base, even or uneven; least size of one on which a
@@ -75,6 +71,11 @@ MIRRORED, ALIKE, UNLIKE = 4000, 2.5, 1.5
 #: How much more the side of a body counts than other views, and how far the middle of what is on
 #: its left is from that of the body, as a share of its width.
 NEARLY_AS_LARGE, BESIDE = 1.3, 0.1
+#: Words for the sides of a body, x to the right, y forward and z up.
+SIDES: dict[Vector, str] = {
+    (1.0, 0.0, 0.0): "from the right", (-1.0, 0.0, 0.0): "from the left",
+    (0.0, 1.0, 0.0): "from the front", (0.0, 0.0, 1.0): "from above",
+}  # fmt: skip
 #: Direction from what a camera sees to the right of it and above, where depths are seen too.
 BESIDE_CAMERA = (0.2, -1.0, 0.25)
 #: Long side over short side from which a flat strip is turned along the picture.
@@ -367,50 +368,6 @@ def _base(points: Array, middle: Array | None, axis: int, sign: int, foot: float
     return float(base.volume / whole.volume)
 
 
-def side_of(surface: pv.PolyData, shown: str) -> Viewpoint | None:
-    """Return the eye on one side of a flattened surface with other values on its other side.
-
-    Parameters
-    ----------
-    surface : pyvista.PolyData
-        Surface.
-    shown : str
-        Name of a point array of values.
-
-    Returns
-    -------
-    Viewpoint or None
-        None for surfaces that are not flattened along x, y or z, that are open, or that have much
-        the same values on both sides.
-    """
-    corner_ids, corners, faces = _triangles(surface)
-    values = _values(surface, shown, corner_ids, faces)
-    if values is None or len(values) < SQUARES**2:
-        return None
-    sizes = np.ptp(corners.reshape(-1, 3), axis=0)
-    axis = int(np.argmin(sizes))
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    is_open = np.linalg.norm(normals.sum(axis=0)) > 0.1 * np.linalg.norm(normals, axis=1).sum()
-    if is_open or sizes[axis] > FLATTENED * np.median(sizes):
-        return None
-    way, places = np.eye(3)[axis], _places(corners)
-    middles = np.delete(places[: len(corners)], axis, axis=1)
-    middles = (middles - middles.min(axis=0)) / np.ptp(middles, axis=0)
-    square = np.minimum((SQUARES * middles).astype(np.int64), SQUARES - 1) @ (SQUARES, 1)
-    means = []
-    for sign in (1, -1):
-        front = _in_front(places, len(corners), sign * way) & np.isfinite(values)
-        count, total = (
-            np.bincount(square[front], weights, SQUARES**2) for weights in (None, values[front])
-        )
-        means.append(total / np.where(count > 0, count, np.nan))
-    deviation = np.sqrt(np.nanmean((means[0] - means[1]) ** 2))
-    if not deviation > DIFFERENT * np.nanstd(values):
-        return None
-    toward = -way if axis == 1 else way
-    return Viewpoint(_vector(toward), (0.0, 1.0, 0.0) if axis == 2 else (0.0, 0.0, 1.0), True)
-
-
 def _creases(surface: pv.PolyData) -> Array:
     """Return the ends of the creases of a surface, (N, 2, 3), with its farthest coordinate at 1."""
     edges = creases(surface)
@@ -493,9 +450,14 @@ def eye_on_body(mesh: pv.DataSet) -> Viewpoint:
     axis = int(np.argmax(seen))
     # The outer side of what is on the left is toward the eye.
     sign = -1.0 if axis == 0 and middle[0] < -BESIDE * (high - low)[0] else 1.0
-    toward = _vector(sign * np.eye(3)[axis])
-    words = ("from the left" if sign < 0 else "from the right", "from the front", "from above")
-    return Viewpoint(toward, (0.0, 1.0, 0.0) if axis == 2 else (0.0, 0.0, 1.0), False, words[axis])
+    return side_of_body(_vector(sign * np.eye(3)[axis]))
+
+
+def side_of_body(toward: Vector) -> Viewpoint:
+    """Return the eye on a side of a body, one of ``SIDES``."""
+    return Viewpoint(
+        toward, (0.0, float(toward[2] > 0), float(toward[2] <= 0)), False, SIDES[toward]
+    )
 
 
 def _around(
@@ -638,8 +600,8 @@ def _seen(
 ) -> float:
     """Return the area that an eye at infinity sees, by how much of a picture it fills.
 
-    Of values, the area counts up to twice where their spread in the picture is that of all, and of
-    kinds by the mean share of each that is seen.
+    Where the values in the picture spread as much as all do, it counts twice; of kinds it counts by
+    the mean share of each that is seen.
     """
     right, up = _plane(way)
     # Open surfaces are seen from both sides.

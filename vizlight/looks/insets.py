@@ -13,7 +13,16 @@ import pyvista as pv
 from vizlight.draw.cameras import axes_of, outermost
 from vizlight.draw.margins import LETTERS
 from vizlight.looks import levels
-from vizlight.looks.framing import OTHER, Inset, Strip, apart, eye_on_body, eye_opposite
+from vizlight.looks.framing import (
+    OTHER,
+    SIDES,
+    Inset,
+    Strip,
+    apart,
+    eye_on_body,
+    eye_opposite,
+    side_of_body,
+)
 from vizlight.looks.recipes import fields, lines, surfaces
 from vizlight.looks.recipes.drawing import FACING, Layer
 from vizlight.looks.steps import Step
@@ -46,11 +55,6 @@ THINNEST = 1.0
 COLORS = ("scalars", "cmap", "clim", "nan_color", "log_scale")
 #: Function that puts a mesh in its place in a picture.
 INSET = "render.inset"
-#: Words for the sides of a body.
-SIDES = {
-    (1.0, 0.0, 0.0): "From the right", (-1.0, 0.0, 0.0): "From the left",
-    (0.0, 1.0, 0.0): "From the front", (0.0, 0.0, 1.0): "From above",
-}  # fmt: skip
 
 
 def of_case(recipe: Recipe, case: Case) -> Case:
@@ -76,7 +80,10 @@ def of_case(recipe: Recipe, case: Case) -> Case:
     insets = _insets(recipe, case)
     if not insets:
         return case
-    eye = eye_on_body(mesh) if recipe is lines.lines else case.eye(case.data)
+    if recipe is lines.lines:
+        eye = eye_on_body(mesh)
+    else:
+        eye = case.eye(case.data if recipe is fields.flow else case.surface)
     return replace(case, wishes=replace(wishes, strip=_strip(case, eye, insets)))
 
 
@@ -95,11 +102,11 @@ def _insets(recipe: Recipe, case: Case) -> list[Inset]:
 
 def _other_sides(case: Case) -> list[Inset]:
     main = np.abs(eye_on_body(case.data.run()).toward)
-    sides = [way for way in SIDES if way[0] >= 0 and not np.array_equal(np.abs(way), main)]
-    up: dict[bool, Vector] = {True: (0.0, 1.0, 0.0), False: (0.0, 0.0, 1.0)}
+    eyes = [side_of_body(way) for way in SIDES if way[0] >= 0]
     return [
-        Inset(way, up[way[2] > 0], SIDES[way], case.ends_of_body(way, up[way[2] > 0]))
-        for way in sides
+        Inset(eye.toward, eye.up, eye.words.capitalize(), case.ends_of_body(eye.toward, eye.up))
+        for eye in eyes
+        if not np.array_equal(eye.toward, main)
     ]
 
 

@@ -53,10 +53,21 @@ class Step:
         self.note = ""
         #: Whether its warnings are of choices that nobody asked for.
         self.quiet = False
+        self._next: dict[str, Step] = {}
 
     def run(self) -> Foreign:
         """Return the result; the call is made once."""
         return self._result
+
+    def then(self, name: str, path: str) -> Step:
+        """Return the step that calls a function with this one's result alone, the same each time.
+
+        Parameters
+        ----------
+        name, path : str
+            As for a step.
+        """
+        return self._next.setdefault(path, Step(name, path, self))
 
     def hold(self, result: object) -> None:
         """Take a result that is known, so that no call is made."""

@@ -1,4 +1,4 @@
-"""Several views in one picture: those that were asked for, and both sides of flat surfaces."""
+"""Several views in one picture: those that were asked for, and both sides of a cortex."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pyvista as pv
 from vizlight import _check
 from vizlight._words import value_error
 from vizlight.draw.margins import written
-from vizlight.looks.framing import Views, side_of
+from vizlight.looks.framing import Views
 from vizlight.looks.recipes import lines
 from vizlight.looks.recipes.drawing import FACING, Layer
 from vizlight.looks.steps import Step, in_order
@@ -22,7 +22,7 @@ from vizlight.reading import brains, molecules
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Foreign, Keywords, Vector
+    from vizlight._types import Foreign, Keywords
     from vizlight.looks.recipes.drawing import Case, Drawing
     from vizlight.looks.wishes import Wishes
 
@@ -116,17 +116,18 @@ def _numbers(view: Sequence[float]) -> str:
 
 
 def of_case(case: Case) -> Case:
-    """Return a case with both sides of a flattened surface whose values differ between them."""
+    """Return a case with both sides of a hemisphere of the cortex that has values."""
     array, wishes = case.array, case.wishes
     is_free = all(each is None for each in (wishes.view, wishes.views, wishes.frame))
     has_values = array is not None and array.role in ("values", "heights")
     is_surface = case.contents.dimension == 2 and case.contents.flat_axis is None
     if not (is_free and has_values and is_surface) or case.on_globe:
         return case
-    if not isinstance(case.surface.run(), pv.PolyData):
+    surface = case.surface.run()
+    side = brains.hemisphere(surface) if isinstance(surface, pv.PolyData) else ""
+    if not side:
         return case
-    views = of_surface(case.surface, case.needed_array.name)
-    return replace(case, wishes=replace(wishes, views=views))
+    return replace(case, wishes=replace(wishes, views=of_hemispheres([side])[0]))
 
 
 def of_pair(meshes: Sequence[pv.DataSet], wishes: Wishes) -> list[Views]:
@@ -142,30 +143,6 @@ def of_pair(meshes: Sequence[pv.DataSet], wishes: Wishes) -> list[Views]:
     sides = [brains.hemisphere(mesh) for mesh in meshes]
     is_free = wishes.view is None and wishes.frame is None
     return of_hemispheres(sides) if is_free and sorted(sides) == ["left", "right"] else []
-
-
-def of_surface(surface: Step, shown: str) -> Views | None:
-    """Return the two sides of a surface on which values differ, None for other surfaces.
-
-    A hemisphere of the cortex always shows both sides.
-
-    Parameters
-    ----------
-    surface : Step
-        Step of the surface.
-    shown : str
-        Name of a point array of values.
-    """
-    mesh = surface.run()
-    if side := brains.hemisphere(mesh):
-        return of_hemispheres([side])[0]
-    if (seen := side_of(mesh, shown)) is None:
-        return None
-    axis = int(np.argmax(np.abs(seen.toward)))
-    signs = ("", "-") if seen.toward[axis] > 0 else ("-", "")
-    away: Vector = tuple(-part or 0.0 for part in seen.toward)
-    names = tuple(f"From {sign}{'xyz'[axis]}" for sign in signs)
-    return Views((seen.toward, away), names, (seen.up,) * 2, words="from both sides")
 
 
 def of_hemispheres(sides: Sequence[str]) -> list[Views]:

@@ -284,6 +284,8 @@ class Case:
         From where it is seen, where a recipe knows a better place than that of any mesh.
     is_beside : bool, default: False
         Whether a mesh of a higher dimension is in the picture.
+    eyes : dict
+        Eyes that were chosen, by the steps of the meshes that they see and the arrays shown.
     """
 
     data: Step
@@ -293,13 +295,14 @@ class Case:
     array: Named | None = None
     viewpoint: Viewpoint | None = None
     is_beside: bool = False
+    eyes: dict[tuple[Step, str | None], Viewpoint] = dataclasses.field(default_factory=dict)
 
     @cached_property
     def surface(self) -> Step:
         """Step that takes the outer surface of the mesh."""
         if isinstance(self.data.run(), pv.PolyData) or not self.wishes.surface:
             return self.data
-        return Step("surface", "files.surface_of", self.data)
+        return self.data.then("surface", "files.surface_of")
 
     @property
     def is_isosurface(self) -> bool:
@@ -314,7 +317,7 @@ class Case:
             return None
         if not isinstance(surface, pv.PolyData):
             return None
-        edges = Step("borders", "files.borders", self.surface)
+        edges = self.surface.then("borders", "files.borders")
         return edges if edges.run().n_cells else None
 
     @cached_property
@@ -327,7 +330,7 @@ class Case:
         is_sheet = self.contents.dimension == 2 and self.contents.flat_axis is not None
         if self.is_isosurface or is_sheet or not isinstance(self.surface.run(), pv.PolyData):
             return None
-        edges = Step("creases", "files.creases", self.surface)
+        edges = self.surface.then("creases", "files.creases")
         return edges if edges.run().n_cells else None
 
     @cached_property
@@ -383,8 +386,11 @@ class Case:
             return eye_around(self.surface.run(), cut=True)
         array = self.array
         shown = None if array is None or array.role == "colors" else array.name
-        is_model = not MODELS.isdisjoint(map(str.lower, path_of(self.data).suffixes))
-        return eye_of(mesh.run(), self.contents, shown, is_model=is_model)
+        if (mesh, shown) not in self.eyes:
+            is_model = not MODELS.isdisjoint(map(str.lower, path_of(self.data).suffixes))
+            eye = eye_of(mesh.run(), self.contents, shown, is_model=is_model)
+            self.eyes[mesh, shown] = eye
+        return self.eyes[mesh, shown]
 
     @cached_property
     def map_frame(self) -> Step | None:
