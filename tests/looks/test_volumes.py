@@ -339,3 +339,22 @@ def test_specks_beside_the_isosurface_of_a_scan_are_left_out(tmp_path):
     # Who asks for a level gets all of it.
     whole = vizlight.look(grid, "shape", contour="T", level=0.0)
     assert whole.mesh.bounds[0] < 0.1
+
+
+def test_a_slab_of_a_scan_is_a_sheet_of_its_slices_and_what_has_signs_is_not_grey():
+    grid = pv.ImageData(dimensions=(40, 36, 8), spacing=(2, 2, 2))
+    x, y, z = grid.points.T
+    grid["t"] = np.exp(-((x - 30) ** 2 + (y - 40) ** 2) / 300) + z / 100
+    meaning.attach(grid, meaning.Meaning(axes=[*meaning.ANATOMY]))
+    look = vizlight.look(grid)
+    assert "side by side" in look.summary
+    # Its brightest hundredth is white, as in a cut.
+    keywords = look.drawing.layers[0].keywords
+    assert grid["t"].min() < keywords["clim"][1] < grid["t"].max()
+    signed = grid.copy()
+    signed["t"] = np.sign(x - 30) * grid["t"]
+    for mesh, is_grey in ((grid, True), (signed, False)):
+        section = vizlight.look(mesh, slice=((0, 0, 1), (0, 0, 8)))
+        table = section.drawing.layers[0].keywords["cmap"]
+        names = getattr(table, "arguments", (table,))
+        assert ("gray" in names) == is_grey

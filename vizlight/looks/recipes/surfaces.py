@@ -40,7 +40,7 @@ from vizlight.vtk.cells import dimensions
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from vizlight._types import Keywords, Raw
+    from vizlight._types import Array, Bools, Keywords, Raw
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
@@ -58,6 +58,10 @@ ROUNDING = 0.05
 #: Largest area of a cell of a plane in the least from which on sizes are shown, and share of the
 #: plane that the lesser half of its cells covers below which the rest is far around them.
 GRADED, FAR_FIELD = 100, 0.02
+#: Number of air in computed tomography, in Hounsfield units, and how near others are its own.
+AIR, NEAR_AIR = -1000.0, 50.0
+#: Largest share of the brightest value by which those of a scan that is resampled are below 0.
+RINGING = 0.1
 #: Key of a kind without a name, which is its title alone.
 TITLE_ALONE: Keywords = {"question": "value", "cmap": Step("", "vizlight.maps.kinds", {0: " "})}
 
@@ -119,9 +123,11 @@ def values(case: Case) -> Drawing:
         )
         is_picture = is_whole and array.low >= 0 and is_tone
         is_scan = is_photograph and (is_whole or _are_steps(rows))
-        is_gray = case.is_of_body or is_picture or is_scan
-        cmap = "gray" if is_gray else LIGHTNESS
-        kind = {"amounts": case.is_of_earth and not is_gray, "scan": is_picture and is_band}
+        is_of_scanner = case.is_of_body and is_gray(case, array)
+        in_gray = is_of_scanner or is_picture or is_scan
+        cmap = "gray" if in_gray else LIGHTNESS
+        is_scan = is_of_scanner or (is_picture and is_band)
+        kind = {"amounts": case.is_of_earth and not in_gray, "scan": is_scan}
         keywords, note = case.ranged_of(mesh, array, cmap, **kind)
     if array.role == "kinds":
         keywords = colors_of_kinds(mesh, array, case.wishes.colors)
@@ -271,10 +277,48 @@ def _keys(case: Case, scene: Step, title: str) -> list[Keywords]:
     return [{"scene": scene, "title": title}]
 
 
+def sample(case: Case, array: Named) -> Array:
+    """Return some of the finite values of an array.
+
+    Parameters
+    ----------
+    case : Case
+    array : Named
+        Array of one component.
+    """
+    rows: Array = np.asarray(case.data.run()[array.name], dtype=np.float64)
+    rows = rows[:: max(len(rows) // SAMPLE, 1)]
+    return rows[np.isfinite(rows)]
+
+
+def is_air(values: Array) -> Bools:
+    """Return which values are those of air in computed tomography.
+
+    Parameters
+    ----------
+    values : ndarray
+    """
+    return np.asarray(np.abs(values - AIR) < NEAR_AIR)
+
+
+def is_gray(case: Case, array: Named) -> bool:
+    """Return whether values are those of a scan of a body in grey, as radiologists print them.
+
+    Parameters
+    ----------
+    case : Case
+    array : Named
+        Array of one component.
+    """
+    values = sample(case, array)
+    is_signed = len(values) > 0 and values.min() < -RINGING * values.max()
+    return bool(is_air(values).any()) if is_signed else case.is_of_body
+
+
 def _are_steps(rows: Raw) -> bool:
     """Return whether numbers are multiples of one step, as those of a scanner by its scale."""
-    sample = rows[:: max(len(rows) // SAMPLE, 1)]
-    steps = np.diff(np.unique(sample[np.isfinite(sample)]).astype(np.float64))
+    some = rows[:: max(len(rows) // SAMPLE, 1)]
+    steps = np.diff(np.unique(some[np.isfinite(some)]).astype(np.float64))
     parts = steps / steps.min(initial=np.inf)
     is_even = np.abs(parts - np.round(parts)) < ROUNDING
     return bool(len(parts) and is_even.all() and parts.sum() <= WHITE[-1])

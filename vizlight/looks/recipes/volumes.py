@@ -23,7 +23,7 @@ from vizlight.vtk.cells import dimensions
 from vizlight.vtk.normals import piece_numbers
 
 if TYPE_CHECKING:
-    from vizlight._types import Array, Bools, Foreign, Keywords
+    from vizlight._types import Array, Foreign, Keywords
     from vizlight.looks.contents import Named
     from vizlight.looks.recipes.drawing import Case
 
@@ -31,14 +31,12 @@ if TYPE_CHECKING:
 LEAST_OF_BOX = 0.4
 #: Fewest voxels along each side of a scan, and the most of its sides that it closes.
 VOXELS, MOST_CLOSED = 30, 0.4
-#: Numbers of air and bone in computed tomography, in Hounsfield units, and how near to that of air
-#: others are its own; least share of air, and shares of bone, of such a scan.
-AIR, BONE, NEAR_AIR, MUCH_AIR, BONES = -1000.0, 300.0, 50.0, 0.05, (0.002, 0.3)
-#: Largest share of the brightest value by which those of a scan that is resampled are below 0.
-RINGING = 0.1
+#: Number of bone in computed tomography, in Hounsfield units; least share of air, and shares of
+#: bone, of such a scan.
+BONE, MUCH_AIR, BONES = 300.0, 0.05, (0.002, 0.3)
 #: Least share of its box that what is above the lowest value of a scan fills where it is cut open,
-#: the points along each axis by which that is found, and the number of values that are looked at.
-COMPACT, STEPS, SAMPLE = 0.25, 50, 100_000
+#: and the points along each axis by which that is found.
+COMPACT, STEPS = 0.25, 50
 #: Share of the values of a scan above a level from which it encloses those below it.
 MOSTLY = 0.75
 #: Share of the values above a level up to which they are on its isosurface.
@@ -101,13 +99,12 @@ def isosurface(case: Case) -> Drawing:
     else the body is cut open.
     """
     array = case.needed_array
-    if case.wishes.question == "auto" and _is_stack(case, array):
+    is_slab = case.is_of_body and not array.of_cells and _is_slab(case.data.run())
+    if case.wishes.question == "auto" and (is_slab or _is_stack(case, array)):
         # A sheet of slices has no place among other meshes.
         return stack(case) if case.wishes.frame is None else slices(case)
     # Where values are shown there is room for their key.
     valued = replace(case, question="value")
-    if case.wishes.question == "auto" and case.is_of_body and _is_slab(case.data.run()):
-        return slices(valued)
     level = _level(case, array)
     if isinstance(level, str):
         return _cut_open(valued) or slices(valued, level)
@@ -167,7 +164,7 @@ def isosurface(case: Case) -> Drawing:
 def _level(case: Case, array: Named) -> _Level | str:
     """Return the level of the isosurface of an array, or why slices are drawn in its place."""
     is_auto, is_scan = case.wishes.question == "auto", _is_scan(case, array)
-    values, notes = _sample(case, array), [SMOOTHED] * is_scan
+    values, notes = surfaces.sample(case, array), [SMOOTHED] * is_scan
     volume = case.data
     if is_scan:
         # The edge of a mask would be a staircase of voxels.
@@ -196,7 +193,7 @@ def _level(case: Case, array: Named) -> _Level | str:
     if is_scan and _has_bones(values):
         level, contrast = BONE, levels.GOOD
         notes.append("bone, by the numbers of computed tomography, in which air is -1000")
-    elif is_scan and is_auto and _is_gray(case, array) and _is_compact(case, array):
+    elif is_scan and is_auto and surfaces.is_gray(case, array) and _is_compact(case, array):
         return ""
     else:
         share = levels.THIN if is_scan else 1.0
@@ -212,7 +209,7 @@ def _are_low_inside(case: Case, array: Named, level: float | tuple[float, float]
 
     What it would show of a body is a gap, unless the others are one value, as of statistics.
     """
-    values = _sample(case, array)
+    values = surfaces.sample(case, array)
     is_gap = np.mean(values > level) > MOSTLY > np.mean(values == values.max())
     return not isinstance(level, tuple) and bool(is_gap)
 
@@ -384,7 +381,7 @@ def _outside_of(case: Case, outside: Step, drawn: Keywords, level: float) -> lis
     name = case.needed_array.name
     high = range_of(outside.run(), name)[1]
     end = level + ON_LEVEL * (range_of(case.data.run(), name)[1] - level)
-    if not _is_gray(case, case.needed_array) or "cmap" in case.wishes.colors:
+    if not surfaces.is_gray(case, case.needed_array) or "cmap" in case.wishes.colors:
         return [Layer(outside, drawn)]
     names = ("scene", "pickable", *case.wishes.drawn(case.wishes.light_of_surface()))
     plain = {key: value for key, value in drawn.items() if key in names} | {"color": SKIN}
@@ -416,7 +413,7 @@ def _toward(case: Case, mesh: Step, eye: Viewpoint) -> tuple[float, ...]:
 
 def _of_cut(case: Case, cut: Step, outside: Step, camera: Step, valued: Step) -> Drawing:
     """Return the drawing of the faces of a cut, in colours for the values of a mesh."""
-    array, is_gray = case.needed_array, _is_gray(case, case.needed_array)
+    array, is_gray = case.needed_array, surfaces.is_gray(case, case.needed_array)
     scene = case.wishes.scene("none", camera)
     colors, note = case.ranged_of(valued, array, "gray" if is_gray else ON_SURFACES, scan=is_gray)
     drawn = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
@@ -443,13 +440,6 @@ def _is_of_scanner(case: Case, array: Named) -> bool:
     return _is_scan(case, array) and (is_whole or case.is_of_body)
 
 
-def _is_gray(case: Case, array: Named) -> bool:
-    """Return whether values are shown in grey, as radiologists print them."""
-    values = _sample(case, array)
-    is_signed = values.min() < -RINGING * values.max()
-    return bool(_is_air(values).any()) if is_signed else case.is_of_body
-
-
 def _is_compact(case: Case, array: Named) -> bool:
     """Return whether the values above the lowest one of an image fill much of its box."""
     mesh = case.data.run()
@@ -462,7 +452,7 @@ def _is_compact(case: Case, array: Named) -> bool:
 def _cut_open(case: Case) -> Drawing | None:
     """Draw the body in a scan cut open toward the eye, None without a body in air."""
     array, wishes = case.needed_array, case.wishes
-    if not _is_scan(case, array) or not _is_gray(case, array):
+    if not _is_scan(case, array) or not surfaces.is_gray(case, array):
         return None
     eye = Viewpoint(FACE, (0.0, 0.0, 1.0)) if case.is_of_body else ISOMETRIC
     toward = _toward(case, case.data, eye)
@@ -508,22 +498,10 @@ def _is_stack(case: Case, array: Named) -> bool:
     return is_one and montages.is_stack(case.data.run())
 
 
-def _sample(case: Case, array: Named) -> Array:
-    """Return some of the finite values of a volume."""
-    rows: Array = np.asarray(case.data.run()[array.name], dtype=np.float64)
-    rows = rows[:: max(len(rows) // SAMPLE, 1)]
-    return rows[np.isfinite(rows)]
-
-
-def _is_air(values: Array) -> Bools:
-    """Return which values are those of air in computed tomography."""
-    return np.asarray(np.abs(values - AIR) < NEAR_AIR)
-
-
 def _has_bones(values: Array) -> bool:
     """Return whether a scan has much air and some bone by the numbers of computed tomography."""
     bones = float(np.mean(values > BONE))
-    return float(np.mean(_is_air(values))) > MUCH_AIR and BONES[0] < bones < BONES[1]
+    return float(np.mean(surfaces.is_air(values))) > MUCH_AIR and BONES[0] < bones < BONES[1]
 
 
 def _is_slab(mesh: pv.DataSet) -> bool:
