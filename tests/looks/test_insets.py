@@ -74,6 +74,14 @@ def test_a_flow_has_the_section_in_which_it_runs():
     assert apart_by > 0
 
 
+def test_a_section_through_what_mostly_stands_still_is_not_shown():
+    def in_vessel(x, y, z):
+        inside = (y - 8) ** 2 + (z - 6) ** 2 < 0.5
+        return inside * (8 - y), inside * (x - 10), 0.1 * inside
+
+    assert shown(block(in_vessel))[0] == []
+
+
 def test_a_flow_without_speeds_has_a_grey_section():
     around = block(lambda x, y, z: (8 - y, x - 10, 0.1 + 0 * z))
     around["values"] /= np.linalg.norm(around["values"], axis=1)[:, np.newaxis]

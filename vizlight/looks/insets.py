@@ -50,6 +50,8 @@ GAP, ABOVE, BELOW = 0.03, 2.2, 2.6
 #: Least area of a section as a share of that of the box around the volume, and least diagonal of
 #: its box in that of this one.
 LEAST_AREA, LEAST_LONG = 0.15, 0.4
+#: Share of the largest speed in a section up to which a flow stands still.
+STILL = 0.02
 #: Least width of lines in an inset, and what a section takes of the drawing of the main view.
 THINNEST = 1.0
 COLORS = ("scalars", "cmap", "clim", "nan_color", "log_scale")
@@ -138,10 +140,14 @@ def _section(case: Case, *, of_flow: bool = False) -> list[Inset]:
         normal = tuple(float(i == axis) for i in range(3))
         section = Step("section", ".slice", joined, normal, origin=origin)
         cut = section.run()
-        is_large = cut.area >= LEAST_AREA * np.delete(sizes, axis).prod()
-        if not cut.n_cells or not is_large or cut.length < LEAST_LONG * volume.length:
+        if not cut.n_cells or cut.length < LEAST_LONG * volume.length:
             continue
         values = _values(cut, array)
+        # What stands still around a flow, as around vessels, shows nothing.
+        moves = values > STILL * np.nanmax(values, initial=0.0)
+        area = cut.area * (float(np.mean(moves)) if of_flow else 1.0)
+        if area < LEAST_AREA * np.delete(sizes, axis).prod():
+            continue
         score = float(np.nanstd(values)) * math.sqrt(cut.area)
         if of_flow:
             rows = np.nan_to_num(np.asarray(cut[array.name], dtype=np.float64))
