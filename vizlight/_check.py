@@ -110,13 +110,7 @@ def choice(name: str, value: object, allowed: Sequence[str], *, optional: bool =
 
 
 def boolean(name: str, value: object, *, expected: str = "True or False") -> bool:
-    """Return a truth value; 0 and 1 count as such, words do not.
-
-    Raises
-    ------
-    TypeError
-        If the value is neither.
-    """
+    """Return a truth value; 0 and 1 count as such, words do not."""
     if isinstance(value, bool | np.bool_) or (isinstance(value, int) and value in (0, 1)):
         return bool(value)
     raise type_error(name, expected, value)

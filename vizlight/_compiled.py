@@ -48,13 +48,7 @@ _BROKEN: list[str] = []
 
 
 def wanted() -> str:
-    """Return the setting of VIZLIGHT_FAST: "0" off, "1" always, "" where it pays.
-
-    Raises
-    ------
-    ValueError
-        If the variable has another value.
-    """
+    """Return the setting of VIZLIGHT_FAST: "0" off, "1" always, "" where it pays."""
     value = os.environ.get("VIZLIGHT_FAST", "")
     if value not in ("", "0", "1"):
         expected = "0 (off), 1 (always) or nothing (where it pays)"
@@ -140,16 +134,9 @@ def release_of(package: str) -> str:
 class Kernel(Generic[P, R]):
     """A function of numbers and arrays that numba compiles at its first call.
 
-    Other kernels that it uses by name are compiled with it; mark small ones by ``inline=True``.
-
-    Parameters
-    ----------
-    function : callable
-        Function in the part of Python that numba compiles.
-    inline : bool
-        Whether the function becomes part of each function that calls it.
-    rounding : set of str
-        Changes of rounding that the compiler may make, such as ``ROUNDING``; none by default.
+    Other kernels that it uses by name are compiled with it; mark small ones by ``inline=True``. An
+    ``inline`` kernel becomes part of each function that calls it; ``rounding`` are changes of
+    rounding that the compiler may make, such as ``ROUNDING``.
     """
 
     def __init__(
@@ -168,16 +155,8 @@ class Kernel(Generic[P, R]):
     def pays(self, saved: float) -> bool:
         """Return whether to call the kernel rather than NumPy code.
 
-        Parameters
-        ----------
-        saved : float
-            Seconds that the kernel would save, its start-up apart.
-
-        Returns
-        -------
-        bool
-            True once the seconds saved by this call and missed by earlier ones exceed half of the
-            start-up.
+        It does once the seconds ``saved`` by this call, the start-up apart, and missed by earlier
+        ones exceed half of the start-up.
         """
         if not active():
             return False
@@ -187,11 +166,9 @@ class Kernel(Generic[P, R]):
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Call the compiled function.
 
-        Raises
-        ------
-        FailedError
-            If numba is not installed, or fails to compile or to run the function. A warning says
-            so once, and no other function is compiled in this process: call NumPy code instead.
+        FailedError is raised if numba is not installed, or fails to compile or to run the function.
+        A warning says so once, and no other function is compiled in this process: call NumPy code
+        instead.
         """
         name = self.function.__name__
         if _unusable():

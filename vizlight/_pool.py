@@ -38,11 +38,6 @@ def workers() -> int:
     """Return the number of threads that share the work.
 
     It is ``VIZLIGHT_THREADS``, or else the number of processors that this process may use.
-
-    Raises
-    ------
-    ValueError
-        If the variable is no integer above 0.
     """
     setting = _SETTING.get() or os.environ.get("VIZLIGHT_THREADS", "")
     if setting:

@@ -8,22 +8,12 @@ from typing import Literal, NamedTuple
 class Question(NamedTuple):
     """Facts on a question, from which its key, its chip on a page and its look are made.
 
-    Attributes
-    ----------
-    title : str
-        Name on a page.
-    says : str
-        What a page says of it.
-    words : tuple of str
-        Words beside its key: below it, or at the two ends of a bar.
-    key : str
-        Form of its key: a ``"ball"`` of normals, a ``"disc"`` of tangents across the view, a
-        ``"hemisphere"`` of tangents to the near side, a ``"bar"`` of tangents from across the view
-        to the eye, or the ``"colors"`` of data as a bar.
-    of_tangents : bool
-        Whether it is about tangents, which lines have by themselves and surfaces do not.
-    by_hue : bool
-        Whether hues of the light are the answer, which the colours of data would hide.
+    ``title`` is its name on a page, which ``says`` more of it; ``words`` stand beside its key:
+    below it, or at the two ends of a bar. ``key`` is its form: a ``"ball"`` of normals, a
+    ``"disc"`` of tangents across the view, a ``"hemisphere"`` of tangents to the near side, a
+    ``"bar"`` of tangents from across the view to the eye, or the ``"colors"`` of data as a bar.
+    Lines have tangents by themselves, surfaces have not; hues of the light that are the answer
+    would be hidden by the colours of data.
     """
 
     title: str

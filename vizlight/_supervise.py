@@ -56,18 +56,8 @@ def read_limit(
 ) -> float:
     """Return the time that a file may take to be read.
 
-    Parameters
-    ----------
-    size : int
-        Size of the file in bytes.
-    seconds, per_mb : float, optional
-        Time of the smallest file, and what each megabyte adds, in seconds. The environment variable
-        ``VIZLIGHT_READ_SECONDS`` replaces the first.
-
-    Returns
-    -------
-    float
-        Time in seconds.
+    It is ``seconds``, which the environment variable ``VIZLIGHT_READ_SECONDS`` replaces, and
+    ``per_mb`` for each megabyte.
     """
     try:
         base = float(os.environ.get(READ_VARIABLE, ""))
@@ -87,16 +77,8 @@ def stage(
 ) -> Iterator[None]:
     """Report the work of the process while this context is entered; without a parent do nothing.
 
-    Parameters
-    ----------
-    doing : {"read", "write", "draw"}
-        Work that may crash.
-    path : path
-        File that is read or written.
-    temporary : str, optional
-        Folder that is removed if the process is killed.
-    seconds : float, optional
-        Time after which the system ends the process, also within a library. Default: no limit.
+    ``temporary`` is a folder that is removed if the process is killed, and ``seconds`` the time
+    after which the system ends the process, also within a library, 0 for no limit.
     """
     if _channel is None:
         yield
@@ -117,13 +99,7 @@ def stage(
 
 @contextlib.contextmanager
 def folder(path: str | os.PathLike[str], /) -> Iterator[Path]:
-    """Make a temporary folder to read a file by, which goes also where the process is killed.
-
-    Parameters
-    ----------
-    path : path
-        File that is read.
-    """
+    """Make a temporary folder to read a file by, which goes also where the process is killed."""
     with tempfile.TemporaryDirectory() as made, stage("read", path, temporary=made):
         yield Path(made)
 
@@ -131,18 +107,9 @@ def folder(path: str | os.PathLike[str], /) -> Iterator[Path]:
 def run(main: Callable[[], int]) -> int:
     """Run a function in a child process and return its exit code; signals are blocked after that.
 
-    Only Linux starts a child; elsewhere, and where threads run already, the function is called.
-
-    Parameters
-    ----------
-    main : callable
-        Function without arguments that returns an exit code.
-
-    Returns
-    -------
-    int
-        Exit code. 2 if a signal or a limit ended the child while it read or wrote a file, 1 if it
-        drew a picture or computed.
+    Only Linux starts a child; elsewhere, and where threads run already, the function is called. The
+    code is 2 if a signal or a limit ended the child while it read or wrote a file, 1 if it drew a
+    picture or computed.
     """
     global _channel  # noqa: PLW0603 - a process has one parent
     # A fork copies the calling thread alone: locks that other threads hold would never be free
@@ -203,13 +170,7 @@ def _open_standard_streams() -> None:
 
 
 def end_with(parent: int) -> None:
-    """Let the kernel kill this process when its parent is killed.
-
-    Parameters
-    ----------
-    parent : int
-        Number of the process that is the parent.
-    """
+    """Let the kernel kill this process when its parent is killed."""
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL))
     # The parent may have ended before it was asked for this.
@@ -274,14 +235,7 @@ def _wait(child: int, reader: int) -> int:
 def unreadable(path: str, code: int, seconds: float) -> str:
     """Return the message on a file that ended the process that read it.
 
-    Parameters
-    ----------
-    path : str
-        Path of the file.
-    code : int
-        Exit code, negative for a signal.
-    seconds : float
-        Time that the file had.
+    The code is negative for a signal; ``seconds`` is the time that the file had.
     """
     if code == -getattr(signal, "SIGALRM", -LATE) or code == LATE:
         why = f"not read within {seconds:.0f} s; the file may be damaged"

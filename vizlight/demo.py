@@ -32,20 +32,9 @@ ABOVE = 1.004
 class Demo:
     """Results of the demonstration.
 
-    Attributes
-    ----------
-    globe : pyvista.PolyData
-        Globe with the wind and its light.
-    lines : pyvista.PolyData
-        Evenly spaced lines of the wind.
-    scene : Scene
-        Scene of the light.
-    camera : pyvista.Camera
-    rows : list of tuple
-        For a white light, and for the light by direction: name, terms, cost in milliseconds,
-        largest error against the second implementation, and how much a reader reads in it.
-    plan : str
-        Terms that were computed, in words.
+    ``rows`` are, for a white light, and for the light by direction: name, terms, cost in
+    milliseconds, largest error against the second implementation, and how much a reader reads in
+    it. ``plan`` has the terms that were computed, in words.
     """
 
     globe: pv.PolyData
@@ -88,27 +77,7 @@ def save_picture(
 ) -> Path:
     """Draw PyVista's picture of the winds beside the lit one, with its key.
 
-    Parameters
-    ----------
-    demo : Demo
-    path : pathlib.Path
-        Path of the PNG file.
-    size : (int, int)
-        Width and height in pixels.
-    backend : {"egl", "osmesa"}, optional
-        OpenGL library; see :func:`vizlight.render.choose_backend`.
-
-    Returns
-    -------
-    pathlib.Path
-        Path of the picture.
-
-    Raises
-    ------
-    BackendError
-        If no OpenGL library can draw here.
-    ValueError
-        If the file cannot be written, or a picture of that size cannot be drawn.
+    The size is in pixels; for ``backend`` see :func:`vizlight.render.choose_backend`.
     """
     with window_class(choose_backend(backend)):
         plotter = pv.Plotter(

@@ -50,23 +50,8 @@ DRAFTS, FRESH, ABANDONED = ".vizlight-file-", ".vizlight-new-", 60.0
 def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "path") -> Path:
     """Return the path of an output file, if the file can be written.
 
-    Parameters
-    ----------
-    path : path
-        Path of the file.
-    formats : tuple of str
-        Allowed file name extensions, each with its dot.
-    name : str, default: "path"
-        Name of the argument in messages.
-
-    Returns
-    -------
-    pathlib.Path
-
-    Raises
-    ------
-    FileError
-        If the extension is not allowed, or the folder is missing or not writable.
+    ``formats`` are the allowed file name extensions, each with its dot, and ``name`` is that of the
+    argument in messages.
     """
     path = checked_path(name, path)
     try:
@@ -85,13 +70,7 @@ def check_output(path: str | Path, /, formats: tuple[str, ...], *, name: str = "
 
 
 def check_format(mesh: pv.DataSet | pv.MultiBlock, path: str | Path, /) -> Path:
-    """Return the path, if its extension belongs to a format for this type of mesh.
-
-    Raises
-    ------
-    FileError
-        If the format does not support the type of mesh.
-    """
+    """Return the path, if its extension belongs to a format for this type of mesh."""
     for block in blocks.all_blocks(mesh) if isinstance(mesh, pv.MultiBlock) else [mesh]:
         check_dataset(block)
     path, kind = checked_path("output", path), type(mesh).__name__
@@ -307,24 +286,8 @@ def replace_file(
 ) -> Path:
     """Write a file in a temporary folder and move it to its path, so that no partial file is left.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file. An existing file is replaced.
-    write : callable
-        Function that writes the file to a path given as a string.
-    doing : {"write", "draw"}
-        Work of the function, for the message if it ends the process.
-
-    Returns
-    -------
-    pathlib.Path
-        Path of the file.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be written.
+    An existing file is replaced. ``write`` takes a path as a string; ``doing`` is its work, for the
+    message if it ends the process.
     """
     path = checked_path("output", path)
     _refuse_others("output", path)

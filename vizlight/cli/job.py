@@ -37,22 +37,9 @@ SAID = {
 class Command:
     """One command: the options of its looks, and its output.
 
-    Parameters
-    ----------
-    wishes : Wishes
-        Options of the look.
-    out : Output
-        Options of the output.
-    stem : str
-        End of the names of files that have none.
-    part : FilePart
-        Part of each file that is taken.
-    tell : callable, optional
-        Function that returns the notes on a look, or an empty text.
-    read : bool
-        Whether to print the legibility of the picture.
-    recipe : sequence of str
-        Options of a command that lights a file alike, which a page copies.
+    ``stem`` is the end of the names of files that have none, ``tell`` returns the notes on a look,
+    or an empty text, ``read`` asks for the legibility of the picture, and ``recipe`` has the
+    options of a command that lights a file alike, which a page copies.
     """
 
     wishes: Wishes

@@ -484,18 +484,8 @@ def takes(
 ) -> Callable[[Callable[..., int]], Callable[..., int]]:
     """Let a command take the options of a filter as ``how``, and groups of others by their class.
 
-    Parameters
-    ----------
-    filter_ : str
-        Name of a public filter; its signature and documentation list the options.
-    group : str
-        Heading of the filter's options in the help.
-    example : str
-        Words of a call that the help ends with.
-    without : tuple of str
-        Options that are left to scripts.
-    **renamed : str
-        Other names of options on the command line.
+    ``group`` is the heading of the filter's options in the help, which ends with the ``example`` of
+    a call; options of ``without`` are left to scripts, and ``renamed`` has other names of options.
     """
 
     def decorate(command: Callable[..., int]) -> Callable[..., int]:

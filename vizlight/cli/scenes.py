@@ -35,21 +35,8 @@ def wishes_of(
 ) -> Wishes:
     """Return the options of the look of a command; those that need no mesh are checked.
 
-    Parameters
-    ----------
-    common, part, color
-        Groups of options.
-    question : str
-        Question of the command; ``--for`` counts before it.
-    light : mapping, optional
-        Options of the filter that lights.
-    material : mapping, optional
-        Coefficients of the command's material where none are given.
-
-    Raises
-    ------
-    ValueError
-        If a value does not fit, or two options do not go together.
+    ``--for`` counts before ``question``; ``light`` has options of the filter that lights, and
+    ``material`` the coefficients of the command's material where the user names none.
     """
     from vizlight.looks.options import checked
     from vizlight.looks.wishes import Wishes
@@ -120,13 +107,7 @@ def _part_of(part: FilePart) -> Keywords:
 
 
 def times(file: Path, part: FilePart) -> list[float | str | None]:
-    """Return the times of the steps of a file that are lit one by one.
-
-    Raises
-    ------
-    ValueError
-        If the file has none of them.
-    """
+    """Return the times of the steps of a file that are lit one by one."""
     from vizlight.reading import series
 
     if part.times is None:

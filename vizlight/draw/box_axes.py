@@ -202,12 +202,7 @@ def _box_of(mesh: Given) -> Array:
 class _Eye:
     """Where points are in a picture, and the directions right and up in it.
 
-    Parameters
-    ----------
-    camera : pyvista.Camera
-        Camera.
-    height : float
-        Height of the picture in pixels.
+    The height of the picture is in pixels.
     """
 
     def __init__(self, camera: pv.Camera, height: float) -> None:

@@ -32,12 +32,7 @@ SIZES = 1e-15, 1e100
 def pixel_sizes(camera: vtkCamera, distance: Array, height: float) -> Array:
     """Return the sizes of a pixel at distances from the plane of the eye, in the unit of the mesh.
 
-    Parameters
-    ----------
-    camera : vtkCamera
-    distance : ndarray, shape (N,)
-    height : float
-        Height of the picture in pixels.
+    The height of the picture is in pixels.
     """
     if camera.GetParallelProjection():
         return np.full(len(distance), 2 * camera.GetParallelScale() / height)
@@ -47,12 +42,7 @@ def pixel_sizes(camera: vtkCamera, distance: Array, height: float) -> Array:
 def footprint(camera: pv.Camera, points: Array, height: float) -> Array:
     """Return the size of a pixel at points, in the unit of the mesh.
 
-    Parameters
-    ----------
-    camera : pyvista.Camera
-    points : ndarray, shape (N, 3)
-    height : float
-        Height of the picture in pixels.
+    The height of the picture is in pixels.
     """
     away = np.array(camera.GetDirectionOfProjection())
     return pixel_sizes(camera, (points - np.array(camera.GetPosition())) @ away, height)
@@ -156,23 +146,9 @@ def outermost(
 ) -> Array:
     """Return the few points of a mesh on which the camera of :func:`camera_on` depends.
 
-    Parameters
-    ----------
-    mesh : mesh
-        Mesh; points that are not finite are ignored.
-    direction, up, aspect
-        As for :func:`camera_on`, which gives the same camera for a mesh of all points and for one
-        of the points that are returned, also if these come from several parts.
-
-    Returns
-    -------
-    ndarray, shape (m, 3)
-        At most 16 points of each 65,536.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a value does not fit.
+    They are at most 16 points of each 65,536, without those that are not finite. :func:`camera_on`
+    gives the same camera for a mesh of all points and for one of these, also if they come from
+    several parts.
     """
     view = axes_of(direction, up), _check.number("aspect", aspect, low=1e-3)
     extremes = [_outermost(some, *view) for some in _coordinates(mesh)]
@@ -215,15 +191,7 @@ def _directions(direction: object, up: Sequence[float] | None) -> tuple[Array, A
 def axes_of(direction: object, up: Sequence[float] | None = None) -> Array:
     """Return the unit vectors to the right and up in the picture, and toward the eye, as rows.
 
-    Parameters
-    ----------
-    direction, up
-        As for :func:`camera_on`.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a value does not fit.
+    Arguments are as for :func:`camera_on`.
     """
     return _axes(*_directions(direction, up))
 
@@ -260,12 +228,7 @@ def _fit(
 def _rings(points: Array, up: Array) -> Array:
     """Return the places of the outermost of some points in a turn about an axis.
 
-    Parameters
-    ----------
-    points : ndarray, shape (N, 3)
-        Points, in relation to a point of the axis.
-    up : ndarray, shape (3,)
-        Direction of the axis, of unit length.
+    Points are in relation to a point of the axis, which has unit length.
     """
     points = points[np.all(np.isfinite(points), axis=1)]
     if not len(points):
@@ -301,10 +264,7 @@ def _coordinates(mesh: Mesh) -> Iterator[Array]:
 def common_bounds(name: str, meshes: Iterable[Mesh]) -> list[float]:
     """Return the bounds of several meshes together.
 
-    Raises
-    ------
-    ValueError
-        If none of the meshes has points; ``name`` is the argument that the message names.
+    The message of an error names the argument ``name``.
     """
     parts = [part for mesh in meshes for part in all_blocks(mesh)]
     boxes = np.array([part.bounds for part in parts if part.n_points])

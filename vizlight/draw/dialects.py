@@ -28,18 +28,12 @@ class Replacement(NamedTuple):
 class Dialect:
     """Words of a renderer that has the marks of VTK in its shaders.
 
-    Parameters
-    ----------
-    normal, tangent : str
-        Names of the attributes of a vertex.
-    web : bool, default: False
-        Whether the renderer is vtk.js, with the GLSL of WebGL 1: the text declares its uniforms,
-        which VTK does itself, and no geometry shader stands between the two others. Actors are
-        not moved, so that tangents turn by the matrix of the normals. (``mat3(MCVCMatrix)`` has
-        the scale of vtk.js's buffers in it.)
-    constant : bool, default: False
-        Whether the text holds the numbers, because the renderer takes none. Those that do not turn
-        with the camera are turned in the vertex shader.
+    ``normal`` and ``tangent`` are names of the attributes of a vertex. With ``web`` the renderer is
+    vtk.js, with the GLSL of WebGL 1: the text declares its uniforms, which VTK does itself, and no
+    geometry shader stands between the two others. Actors are not moved, so that tangents turn by
+    the matrix of the normals. (``mat3(MCVCMatrix)`` has the scale of vtk.js's buffers in it.) With
+    ``constant`` the text holds the numbers, because the renderer takes none; those that do not turn
+    with the camera are turned in the vertex shader.
     """
 
     normal: str = "normalMC"
@@ -98,18 +92,7 @@ class Dialect:
         return parts
 
     def replacements(self, program: Program, numbers: Iterable[Uniform]) -> list[Replacement]:
-        """Return the replacements that a renderer puts in place of its own light.
-
-        Parameters
-        ----------
-        program : Program
-        numbers : iterable of Uniform
-            Numbers of the program.
-
-        Returns
-        -------
-        list of Replacement
-        """
+        """Return the replacements that a renderer puts in place of its own light."""
         uniforms_in, varyings = list(numbers), list(program.varyings)
         constants = ""
         # ParaView 5.11 has no uniforms of our own: numbers stand in the text, and what turns with

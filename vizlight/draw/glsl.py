@@ -61,21 +61,10 @@ def is_plain(shininess: float) -> bool:
 def fragment(plan: Plan, *, turned: bool = False, data: bool = False) -> tuple[str, str]:
     """Return the functions and the body of a fragment shader for the light of a plan.
 
-    Parameters
-    ----------
-    plan : Plan
-        Plan of a surface or of one tangent per point in 3-space.
-    turned : bool, default: False
-        Whether the normal is turned to the eye, unless it leans away by ``vizLean`` at most.
-    data : bool, default: False
-        Whether the renderer's colours come from data.
-
-    Returns
-    -------
-    declarations, body : str
-        The body sets ``vizColor`` from ``vizT``, ``vizN``, ``vizP`` and ``vizHeight`` in view
-        coordinates, ``vizShare``, the renderer's ``ambientColor`` and ``diffuseColor``, and
-        uniforms.
+    With ``turned`` the normal is turned to the eye, unless it leans away by ``vizLean`` at most;
+    ``data`` are colours of the renderer. The body sets ``vizColor`` from ``vizT``, ``vizN``,
+    ``vizP`` and ``vizHeight`` in view coordinates, ``vizShare``, the renderer's ``ambientColor``
+    and ``diffuseColor``, and uniforms.
     """
     # The terms write themselves: each operation on a symbol appends a line to the shader.
     w = FragmentShader(plan, data=data)
@@ -291,15 +280,9 @@ MOST_LIGHTS = 16
 class Uniform(NamedTuple):
     """Number or vector that a program is given, in world coordinates.
 
-    Attributes
-    ----------
-    name : str
-    kind : {"float", "vec3", "vec4"}
-        Type of GLSL.
-    value : tuple of float
-    space : {"", "direction", "position"}
-        Kind of the first three numbers. The program takes directions (of unit length) and
-        positions in view coordinates.
+    ``kind`` is the type of GLSL, "float", "vec3" or "vec4", and ``space``, "direction", "position"
+    or empty, is that of the first three numbers: the program takes directions (of unit length) and
+    positions in view coordinates.
     """
 
     name: str
@@ -330,19 +313,11 @@ DIMENSION = "(2.0 - step(2.5, {size}) - step(4.5, {size}))"
 class Stroke(NamedTuple):
     """How wide lines are drawn, and whether they are lit as a cylinder across their width.
 
-    Attributes
-    ----------
-    diameter : float or None
-        Diameter in the unit of the mesh; None for a width in pixels.
-    round : bool
-        Whether each fragment has the normal of the cylinder that the line stands for.
-    halo : float
-        Width of the band on each side of a line, in widths of the line.
-    width : str or None
-        Name of the point array of widths, as shares from 0 to 1 of the width of the line; None for
-        lines of one width.
-    outline : str or None
-        Colour of the band; None for that of the ground.
+    The ``diameter`` is in the unit of the mesh; None for a width in pixels. A ``round`` line has
+    the normal of the cylinder that it stands for in each fragment. ``halo`` is the width of the
+    band on each side, in widths of the line, and ``outline`` its colour, None for that of the
+    ground; ``width`` names the point array of widths, as shares from 0 to 1 of that of the line,
+    None for one width.
     """
 
     diameter: float | None = None
@@ -374,14 +349,7 @@ CYLINDER_NORMAL = """  vec3 vizLast = vec3(MCDCMatrix[0][3], MCDCMatrix[1][3], M
 class Program(NamedTuple):
     """Text of a fragment shader, and its inputs.
 
-    Attributes
-    ----------
-    functions : str
-        Functions that the body calls.
-    body : str
-        Statements that set ``vizColor`` from varyings, uniforms, ``ambientColor`` and
-        ``diffuseColor``.
-    varyings : tuple of Varying
+    The body sets ``vizColor`` from varyings, uniforms, ``ambientColor`` and ``diffuseColor``.
     """
 
     functions: str
@@ -417,26 +385,13 @@ def write(
 ) -> Program:
     """Return the program of a plan.
 
-    Parameters
-    ----------
-    plan : Plan
-        Plan of a surface or of one tangent per point in 3-space, in its exact form.
-    turned : bool
-        Whether the normal is turned to the eye, unless it leans away by the sine in its length:
-        from 1 for a lean of -1 to 2 for one of 1.
-    toward : {"", "eye", "face"}
-        Where normals have no such length: whether they are turned to the eye, or to the side of
-        the face that is seen, which may lean away between the corners. A line has no face.
-    stroke : Stroke
-        Width of lines; round ones have the plan of the surface of their cylinders.
-    data : bool, default: False
-        Whether the renderer's colours come from data, which light keeps readable.
-    sky : bool, default: False
-        Whether the number ``vizSky`` says how much the share of the ambient light counts.
-
-    Returns
-    -------
-    Program
+    The plan is that of a surface or of one tangent per point in 3-space, in its exact form; round
+    strokes have the plan of the surface of their cylinders. With ``turned`` the normal is turned to
+    the eye, unless it leans away by the sine in its length, 1 at -1 and 2 at 1. Where normals have
+    no such length, ``toward`` turns them to the "eye", or to the side of the "face" that is seen,
+    which may lean away between the corners; a line has no face. ``data`` are colours of the
+    renderer that light keeps readable, and with ``sky`` the number ``vizSky`` says how much the
+    share of the ambient light counts.
     """
     # Varyings are declared only where the body reads them: the least that WebGL has are eight.
     functions, body = fragment(plan, turned=turned, data=data)
@@ -496,31 +451,9 @@ def numbers(
 ) -> list[Uniform]:
     """Return the numbers of the program of a scene.
 
-    Parameters
-    ----------
-    scene : Scene
-        Scene with the ends of its depth cue.
-    lights : sequence of Light
-        Lights of the plan, with headlights fixed.
-    ambient, diffuse : float, default: 1.0
-        Coefficients that a renderer has multiplied its colours by.
-    specular_color : (r, g, b)
-        Specular colour of the renderer.
-    fur : float
-        Density of the fur, 0 for none.
-    tallest : float
-        Height of fur with a normal of length 2.
-    data : bool, default: False
-        Whether the renderer's colours come from data.
-
-    Returns
-    -------
-    list of Uniform
-
-    Raises
-    ------
-    ValueError
-        If the scene has more than 16 lights.
+    The scene has the ends of its depth cue, and headlights are fixed.
+    A renderer has multiplied its colours by ``ambient`` and ``diffuse``. ``fur`` is the density of
+    the fur, 0 for none, and ``tallest`` the height of fur with a normal of length 2.
     """
     if len(lights) > MOST_LIGHTS:
         raise _check.value_error("lights", f"at most {MOST_LIGHTS} lights", str(len(lights)))

@@ -799,17 +799,7 @@ def write_page(
     files: Literal[1, 2] = 1,
     **content: Given,
 ) -> Path:
-    """Write the page of meshes with live light; see :func:`page_text`.
-
-    Returns
-    -------
-    pathlib.Path
-
-    Raises
-    ------
-    FileError
-        If the file cannot be written.
-    """
+    """Write the page of meshes with live light; see :func:`page_text`."""
     path = check_output(path, SUFFIXES)
     beside = path.with_name(SCRIPT)
     text = page_text(shown, plotter, stem=path.stem, script=SCRIPT if files == 2 else "", **content)
@@ -833,30 +823,12 @@ def page_text(
 ) -> str:
     """Return the text of a page of meshes with live light.
 
-    Parameters
-    ----------
-    shown : sequence of PageMesh
-    plotter : pyvista.Plotter
-        Plotter with the camera and the lights.
-    stem : str
-        Name of the pictures that a reader saves.
-    title : str
-        Title of the page.
-    panel, key : bool
-        Whether the panel is open at first, and whether the key of a preset's light is shown.
-    frames : (str, sequence of float or of str), optional
-        Name of the numbers of the frames, and the numbers. Two names in place of numbers are
-        frames that are seen at once, left and right of a divider, on a page without a panel.
-    source : sequence of str
-        File, and options of the command that lights it alike.
-    auto : bool
-        Whether nobody chose the background, which is dark then on dark pages.
-    script : str
-        File of the script; empty for one within the page.
-
-    Returns
-    -------
-    str
+    ``stem`` is the name of the pictures that a reader saves. ``panel`` and ``key`` say whether the
+    panel is open at first, and whether the key of a preset's light is shown. ``frames`` is the name
+    of the numbers of the frames, and the numbers; two names in their place are frames that are seen
+    at once, left and right of a divider, on a page without a panel. ``source`` is the file, and
+    options of the command that lights it alike. With ``auto`` nobody chose the background, which is
+    dark then on dark pages. ``script`` is the file of the script; empty for one within the page.
     """
     _check.text("title", title)
     panel, key = _check.boolean("panel", panel), _check.boolean("key", key)

@@ -142,16 +142,8 @@ def labelled(
 ) -> pv.MultiBlock:
     """Return pieces of isolines with their numbers.
 
-    Parameters
-    ----------
-    mesh, name, letters, clear_of
-        As for :func:`isolines`.
-    pieces : list of (ndarray, float)
-        Pieces with their levels, of :func:`contoured`; those of other levels are left out.
-    text_of : mapping of float to str
-        Numbers of the levels.
-    unit : float, optional
-        Unit of the values of highs and lows.
+    Pieces are those of :func:`contoured`; those of levels without a number in ``text_of`` are left
+    out. ``unit`` is that of the values of highs and lows, and the rest is as for :func:`isolines`.
     """
     pieces = [(piece, level) for piece, level in pieces if level in text_of]
     marks = [] if unit is None else _extremes(mesh, name, pieces, letters, unit)
@@ -337,13 +329,8 @@ def _numbers(words: list[tuple[Array, Indices, float]], height: float) -> pv.Pol
 def contoured(mesh: pv.DataSet, name: str, levels: Array, *, longest: float = math.inf) -> Pieces:
     """Return the connected pieces of isolines, each with its level.
 
-    Parameters
-    ----------
-    mesh, name, levels
-        As for :func:`isolines`.
-    longest : float, optional
-        Length of all isolines together above which there are none: to join those of noise takes
-        minutes.
+    Arguments are as for :func:`isolines`; if all together are longer than ``longest`` none is
+    returned, since to join those of noise takes minutes.
     """
     if name not in (*mesh.point_data, *mesh.cell_data):
         there = [*mesh.point_data, *mesh.cell_data]
@@ -389,16 +376,8 @@ def are_smooth(
 ) -> bool:
     """Return whether isolines are few, long and apart: a field is smooth in its picture.
 
-    Parameters
-    ----------
-    mesh, letters
-        As for :func:`isolines`.
-    pieces : list of (ndarray, float)
-        Pieces of isolines with their levels, of :func:`contoured`.
-    levels : collection of float
-        Levels of which the pieces are looked at.
-    sparse : float
-        Least distance between lines, in heights of letters.
+    Pieces are those of :func:`contoured`, looked at where their level is among ``levels``;
+    ``sparse`` is the least distance between lines, in heights of letters.
     """
     lengths = np.array([_length(piece) for piece, level in pieces if level in levels])
     x, y, _ = mesh.bounds_size

@@ -36,15 +36,7 @@ GIVEN, BYTES = "Data", "vizlight rgb"
 def sorted_out(
     function: str, options: Keywords, scene: Scene | None, more: Iterable[str] = ()
 ) -> tuple[Keywords, Keywords]:
-    """Return options of light, and keywords of ``pyvista.Plotter.add_mesh`` by their own names.
-
-    Raises
-    ------
-    TypeError
-        If neither knows a name; the nearest one is named.
-    ValueError
-        If both a scene and a coefficient of a material are given.
-    """
+    """Return options of light, and keywords of ``pyvista.Plotter.add_mesh`` by their own names."""
     drawn = {*inspect.signature(pv.Plotter.add_mesh).parameters, *ALIASES, *_MORE}
     drawn -= {"self", "mesh", "kwargs"}
     for name, value in options.items():
@@ -120,11 +112,6 @@ def colored(
 
     Colours that are given as an array, or as numbers of ``rgb=True``, or as cell data beside point
     data of the same name, are attached to a shallow copy.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an array does not fit.
     """
     if scalars is None:
         return mesh, None
@@ -200,13 +187,7 @@ def _attached(
 
 
 def as_bytes(colors: Raw) -> NDArray[np.uint8]:
-    """Return colours as bytes: those given as bytes as they are, others from 0 to 1 as shares.
-
-    Raises
-    ------
-    ValueError
-        If they have neither three nor four components.
-    """
+    """Return colours as bytes: those given as bytes as they are, others from 0 to 1 as shares."""
     if colors.ndim != 2 or colors.shape[1] not in (3, 4):
         raise _check.value_error("scalars", "colours of 3 or 4 components for rgb=True", colors)
     if colors.dtype == np.uint8:

@@ -49,22 +49,11 @@ AS_IT_IS = dialects.Replacement(
 class Live:
     """A drawn mesh with light that follows the camera, the lights and the mesh.
 
-    The light is an array of the points, the same numbers as a filter attaches;
-    :class:`Fragments` computes it in each fragment. An observer of the
-    actor keeps it alive, so that nothing is left once the actor is gone.
-
-    Parameters
-    ----------
-    source : Source
-        Source of the light. Its mesh is the caller's.
-    scene : Scene or None
-        Scene; None for the lights and the material of the plotter.
-    stroke : Stroke
-        How lines are drawn.
-    reason : str
-        Why the light is not computed in each fragment; empty where it is.
-    follow : bool, default: True
-        Whether the camera takes the place of the view of the scene.
+    The light is an array of the points, the same numbers as a filter attaches; :class:`Fragments`
+    computes it in each fragment. An observer of the actor keeps it alive, so that nothing is left
+    once the actor is gone. The mesh of the source is the caller's. Without a scene the lights and
+    the material of the plotter count, and with ``follow`` the camera takes the place of the view of
+    the scene; ``reason`` says why the light is not computed in each fragment, empty where it is.
     """
 
     def __init__(
@@ -128,11 +117,6 @@ class Live:
         """Take the colours from an array of the mesh.
 
         Colours of cells are averaged where the light is at the points, with a warning.
-
-        Raises
-        ------
-        TypeError, ValueError
-            If the mesh has no such array.
         """
         self.given, self.component = scalars, component
         self.scalars = scalars
@@ -308,13 +292,7 @@ class Live:
         self._state = self._state_of(renderer, actor)
 
     def paint(self, renderer: vtkRenderer, actor: vtkActor) -> None:
-        """Show the light of the scene of a frame, dimmed where its lights are now.
-
-        Raises
-        ------
-        TypeError, ValueError
-            If the scene does not fit.
-        """
+        """Show the light of the scene of a frame, dimmed where its lights are now."""
         scene = self.scene_of(renderer, actor)
         source = self.source.dimmed_by(scene)
         if source is not self.source:
@@ -448,19 +426,8 @@ def matrix_of(matrix: vtkMatrix4x4) -> Array:
 def in_view(camera: vtkCamera, aspect: float, points: Array) -> tuple[Array, Bools]:
     """Return where points are in the view of a camera, and which of them are in front of the eye.
 
-    Parameters
-    ----------
-    camera : vtkCamera
-    aspect : float
-        Width of the picture by its height.
-    points : ndarray, shape (N, 3)
-
-    Returns
-    -------
-    places : ndarray, shape (N, 3)
-        From -1 to 1 to the right, up, and from the near plane to the far one; of no meaning behind
-        the eye.
-    front : ndarray of bool, shape (N,)
+    ``aspect`` is the width of the picture by its height. Places (N, 3) are from -1 to 1 to the
+    right, up, and from the near plane to the far one; of no meaning behind the eye.
     """
     matrix = matrix_of(camera.GetCompositeProjectionTransformMatrix(aspect, -1, 1))
     whole = points @ matrix[:, :3].T + matrix[:, 3]
@@ -530,18 +497,8 @@ def unfit(
 ) -> str:
     """Return why a source cannot be lit in each fragment, or an empty string.
 
-    Parameters
-    ----------
-    source : Source
-    stroke : Stroke
-        How its lines are drawn.
-    cast : bool, default: False
-        Whether a height field casts its shadow in each fragment, which takes longer than the rest
-        of the light.
-
-    Returns
-    -------
-    str
+    With ``cast`` a height field casts its shadow in each fragment, which takes longer than the rest
+    of the light.
     """
     inputs, options = source.inputs, source.options
     layout = inputs.layout

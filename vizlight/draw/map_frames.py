@@ -180,12 +180,7 @@ def graticule(
 
 
 def has_bar(mesh: pv.DataSet) -> bool:
-    """Return whether the frame of a map has a bar below its degrees.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return whether the frame of a map has a bar below its degrees."""
     sheet = charts.sheet(mesh)
     is_known = georeference.has_degrees(mesh) or sheet is not None
     return is_known and _bar_unit(mesh, sheet) > 0
@@ -467,18 +462,9 @@ def ticks(
 ) -> list[tuple[float, str]]:
     """Return round places along a side of a map, and their words.
 
-    Parameters
-    ----------
-    low, high : float
-        Ends of the side in degrees.
-    size : float
-        Height of letters in degrees.
-    signs : {"EW", "NS"}
-        Letters for degrees above and below 0.
-    most : int
-        Largest number of places.
-    is_up : bool, optional
-        Whether they stand one above the other. Default: latitudes do.
+    The ends and ``size``, the height of letters, are in degrees; ``signs``, "EW" or "NS", are
+    letters for degrees above and below 0, and ``most`` is the largest number of places. ``is_up``:
+    they stand one above the other, as latitudes do by default.
     """
     is_up = signs == "NS" if is_up is None else is_up
     for step in STEPS:

@@ -70,15 +70,8 @@ class Margin:
     """Title above the data, and keys in a strip beside them, on the ground of the picture.
 
     The strip is at the right of a picture that is wider than tall, else below; a bar that lies is
-    below. The renderer of the
-    data gives up these parts of its viewport, so that nothing is drawn over the data.
-
-    Parameters
-    ----------
-    renderer : vtkRenderer
-        Renderer of the data.
-    ink : (r, g, b)
-        Colour of the words.
+    below. The renderer of the data gives up these parts of its viewport, so that nothing is drawn
+    over the data. The colour of the words is ``ink``.
     """
 
     def __init__(self, renderer: vtkRenderer, ink: Color) -> None:
@@ -261,11 +254,7 @@ def _is_map(renderer: vtkRenderer) -> bool:
 def _box_of(renderer: vtkRenderer, *, data: bool) -> Array:
     """Return left, low, right and top of the drawing of a renderer, in its pixels.
 
-    Parameters
-    ----------
-    renderer : vtkRenderer
-    data : bool
-        Whether the data alone count, which can be picked.
+    With ``data`` the data alone count, which can be picked.
     """
     wide, high = renderer.GetSize()
     corners: list[tuple[float, ...]] = []
@@ -285,16 +274,9 @@ def _box_of(renderer: vtkRenderer, *, data: bool) -> Array:
 class MarginKey:
     """A key and its words, drawn in pixels.
 
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Key, as :func:`vizlight.presets.key` returns it.
-    size : float
-        Width of a disc, as a share of the shorter side of the picture.
-    ink : (r, g, b)
-        Colour of the words.
-    lying : bool
-        Whether it is a bar that lies, as long as it is the only key.
+    The mesh is that of :func:`vizlight.presets.key`, ``size`` the width of a disc, as a share of
+    the shorter side of the picture, ``ink`` the colour of the words. A bar that is ``lying`` does
+    so as long as it is the only key.
     """
 
     def __init__(self, mesh: pv.PolyData, size: float, ink: Color, *, lying: bool) -> None:
@@ -362,16 +344,9 @@ class MarginKey:
     ) -> tuple[float, float]:
         """Return the width and height in pixels that the key takes at a size of letters.
 
-        Parameters
-        ----------
-        short : float
-            Shorter side of the picture.
-        letters, width : float
-            Height of letters, and available width.
-        tall : float
-            Height of a bar; 0 for that of its own.
-        alone : bool
-            Whether the title right above the data is that of the key.
+        ``short`` is the shorter side of the picture, ``width`` the available one, ``tall`` the
+        height of a bar, 0 for that of its own; with ``alone`` the title right above the data is
+        that of the key.
         """
         self._half, self._room = self.size * short / 2, width
         if self._is_title:
@@ -475,14 +450,7 @@ class MarginKey:
     def lay(self, columns: tuple[float, float], upper: float, letters: float) -> None:
         """Lay a bar between two columns, its numbers below it.
 
-        Parameters
-        ----------
-        columns : (float, float)
-            Left and right end of the bar.
-        upper : float
-            Row of its upper side.
-        letters : float
-            Height of letters.
+        ``upper`` is the row of its upper side.
         """
         (left, right), high = columns, BAR_HIGH * letters
         self._heading.SetInput("")
@@ -544,16 +512,8 @@ def data_share(
 ) -> tuple[float, float]:
     """Return the shares of the width and of the height of a picture that the margin leaves.
 
-    Parameters
-    ----------
-    size : (int, int)
-        Width and height in pixels.
-    key : float
-        Width of a key, as a share of the shorter side, 0 for none.
-    titled : bool, default: True
-        Whether a title stands above the data.
-    lying : bool, default: False
-        Whether a single bar lies below the data.
+    ``size`` is in pixels, and ``key`` is the width of a key, as a share of the shorter side, 0 for
+    none; with ``titled`` a title stands above the data, with ``lying`` a single bar below them.
     """
     width, height = size
     tall = 1 - titled * band_share(size)
@@ -568,12 +528,7 @@ def data_share(
 
 
 def written(name: str) -> str:
-    """Return a name in words: without underscores, and with a capital where it is a word.
-
-    Parameters
-    ----------
-    name : str
-    """
+    """Return a name in words: without underscores, and with a capital where it is a word."""
     # Capitals within a name begin words, such as those of velocityField.
     apart = re.sub(r"(?<=[a-z]{2})(?=[A-Z][a-z]{2})", " ", name)
     # Names of files and data in capitals, such as CT_AVM, are as they are.
@@ -589,10 +544,7 @@ def written(name: str) -> str:
 def parted(title: str) -> tuple[str, str]:
     """Return a title in words without its unit, and the unit, which is in parentheses.
 
-    Parameters
-    ----------
-    title : str
-        Title, such as "air_pressure (hPa); lines every 4 hPa".
+    A title is such as "air_pressure (hPa); lines every 4 hPa".
     """
     match = re.fullmatch(r"(.*?)(?: \(([^()]*)\))?((?:; .*)?)", title, re.DOTALL)
     assert match is not None
@@ -656,14 +608,7 @@ def _with_beyond(
 def _thinned(places: list[float], zero: float, most: float) -> list[bool]:
     """Return which of some places along a bar have words, so that these fit.
 
-    Parameters
-    ----------
-    places : list of float
-        Places, as shares of the length.
-    zero : float
-        Place of zero, from which its neighbours are counted.
-    most : float
-        Number of words that fit.
+    Places are shares of the length; neighbours are counted from ``zero``, and ``most`` words fit.
     """
     if len(places) <= most:
         return [True] * len(places)

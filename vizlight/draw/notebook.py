@@ -30,15 +30,7 @@ SANDBOX = "allow-scripts allow-downloads allow-modals"
 
 
 class Frame:
-    """A page within a notebook, which stays interactive where the notebook is exported.
-
-    Parameters
-    ----------
-    text : str
-        Text of the page.
-    height : int
-        Height in pixels.
-    """
+    """A page within a notebook, which stays interactive where the notebook is exported."""
 
     def __init__(self, text: str, height: int) -> None:
         self.text, self.height = text, height
@@ -59,13 +51,7 @@ class Guarded:
         self.name, self.handler = name, handler
 
     def __call__(self, plotter: pv.BasePlotter, **options: object) -> object:
-        """Show a plotter.
-
-        Raises
-        ------
-        ValueError
-            If the browser would draw live light.
-        """
+        """Show a plotter."""
         if is_live(plotter):
             mode = options.get("mode") or self.name
             if mode == "html":

@@ -290,13 +290,7 @@ def _unfit(reason: str) -> str:
 
 
 def _plan(scene: Scene, layout: Layout, options: ShadingOptions) -> Plan:
-    """Return the plan of a scene as ParaView's camera sees it.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the scene does not fit, or the light cannot be computed in each fragment.
-    """
+    """Return the plan of a scene as ParaView's camera sees it."""
     _check.instance("scene", scene, Scene)
     if scene.n not in (None, 3):
         raise _check.value_error("scene", "vectors of 3 components", scene.n)

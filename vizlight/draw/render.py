@@ -396,13 +396,7 @@ def pictures(
 
 
 def pixels_of(size: object) -> list[int]:
-    """Return width and height in pixels, if a picture of that size can be drawn.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the size is not two positive integers within the limits of anti-aliasing.
-    """
+    """Return width and height in pixels, if a picture of that size can be drawn."""
     if _check.reals("size", size).shape != (2,):
         raise _check.value_error("size", "(width, height) in pixels", _check.describe(size))
     sides = _check.vector("size", size)
@@ -587,13 +581,7 @@ PLAINLY = 0.25
 def save_seen(plotter: pv.Plotter, path: Path, draft: str) -> None:
     """Save the picture of a plotter to a draft of a file, and warn where it hardly shows data.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    path : pathlib.Path
-        Path of the picture, for the warning.
-    draft : str
-        Path to which it is written first.
+    The path is that of the picture, for the warning; it is written to the draft first.
     """
     picture = np.asarray(plotter.screenshot(draft, return_img=True))
     corner = picture[0, 0].astype(np.int16)

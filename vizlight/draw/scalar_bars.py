@@ -30,12 +30,7 @@ DIGITS = 7
 def wrapped(text: str, columns: int) -> list[str]:
     """Return the lines of a text, which may break within a name: after _, before a capital.
 
-    Parameters
-    ----------
-    text : str
-        Text.
-    columns : int
-        Most letters of a line, where its words are no longer.
+    ``columns`` is the number of letters of a line, where its words are no longer.
     """
     if max(map(len, text.split()), default=0) > columns:
         text = re.sub(r"_|(?<=[a-z])(?=[A-Z])", rf"\g<0>{BREAK} ", text)
@@ -46,14 +41,8 @@ def wrapped(text: str, columns: int) -> list[str]:
 def settle(plotter: pv.BasePlotter, bar: vtkScalarBarActor, options: Keywords) -> None:
     """Leave room for the words of a scalar bar in the picture, and set them apart.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        Plotter with the active renderer and the theme of the bar.
-    bar : vtkScalarBarActor
-        Bar as PyVista made it; left so where ``options`` says how large it is or where it stands.
-    options : dict
-        Keywords of ``pyvista.Plotter.add_scalar_bar`` that a user gave.
+    The plotter has the active renderer and the theme of the bar, which is left as PyVista made it
+    where ``options``, the keywords of a user, say how large it is or where it stands.
     """
     wide, high = plotter.renderer.GetSize()
     if options.keys() & PLACED or not (wide and high):

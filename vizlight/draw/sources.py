@@ -92,13 +92,7 @@ def _refuse_without_tangents(
 def sources_in_scene(
     mesh: pv.DataSet | pv.MultiBlock, scene: AnyScene | None, options: Keywords
 ) -> tuple[list[Source], Scene]:
-    """Return the sources of light and their scene for a file, which has no lights of a plotter.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument does not fit, or neither a scene nor the record of one is given.
-    """
+    """Return the sources of light and their scene for a file, which has no lights of a plotter."""
     blocks.check(mesh)
     sources, used = sources_of(mesh, optional_scene(scene), options)
     if used is None:
@@ -122,12 +116,7 @@ def lit_apart(
 def with_sharp_edges(mesh: pv.DataSet, light: LightOptions) -> pv.DataSet:
     """Return a surface with points split at sharp edges, the mesh itself if it has none.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh.
-    light : LightOptions
-        Options of its light, with ``feature_angle``, the least angle of an edge that is sharp.
+    The light has ``feature_angle``, the least angle of an edge that is sharp.
     """
     # An array of tangents has the rows of the mesh as it is, which split points would not fit.
     if not (mesh.n_points and mesh.n_cells and isinstance(light.tangents, str | None)):
@@ -195,12 +184,8 @@ def tinted(mesh: pv.DataSet, *, warn: bool = True) -> tuple[str | None, Keywords
 def box(mesh: pv.DataSet) -> pv.PolyData | None:
     """Return the six sides of a grid as a surface with its normals and arrays, None for others.
 
-    Points on the edges of the box are stored once for each side.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh; an image or a rectilinear grid of two or more points along each axis has sides.
+    Points on the edges of the box are stored once for each side. An image or a rectilinear grid of
+    two or more points along each axis has sides.
     """
     if not isinstance(mesh, pv.ImageData | pv.RectilinearGrid) or min(mesh.dimensions) < 2:
         return None
@@ -253,22 +238,9 @@ def fixed_colors(
 ) -> tuple[Bytes, str]:
     """Return colours in light that stays as it is when the eye moves.
 
-    Parameters
-    ----------
-    source : Source
-    scene : Scene
-        Scene; its view is used only where ambient and diffuse light cannot do without one.
-    colors : ndarray of uint8, shape (M, 4), or None
-        Colours of data; None for the material's.
-    ids : ndarray of int, shape (M,)
-        Point of the source that each colour belongs to, -1 for none.
-
-    Returns
-    -------
-    colors : ndarray of uint8, shape (M, 4)
-        Colours in ambient and diffuse light.
-    from_view : str
-        Terms that were computed for the view of the scene, in words; empty if none were.
+    The view of the scene is used only where ambient and diffuse light cannot do without one; terms
+    that were computed for it are returned in words. ``colors`` of data, None for the material's,
+    are of the points ``ids`` of the source, -1 for none.
     """
     seen = []
     following = [light for light in scene.lights if light.follows_view and light.intensity > 0]

@@ -57,17 +57,8 @@ BEHIND = 2.0
 def stroke_of(mesh: pv.DataSet, drawing: Keywords) -> Stroke:
     """Take from keywords how lines are drawn.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh; one that is not of lines has no stroke.
-    drawing : dict
-        Keywords of ``add_mesh``, from which those of strokes are taken: line_diameter, halo, width
-        and, for lines, render_lines_as_tubes.
-
-    Returns
-    -------
-    Stroke
+    They are those of ``add_mesh``: line_diameter, halo, width and, for lines,
+    render_lines_as_tubes. A mesh that is not of lines has no stroke.
     """
     diameter, halo = drawing.pop("line_diameter", None), drawing.pop("halo", False)
     share = drawing.pop("width", None)
@@ -108,18 +99,9 @@ def check_halo(halo: bool | float | str) -> bool | float | str:
 def with_halo(stroke: Stroke, line_width: float, halo: float | str | None) -> Stroke:
     """Return a stroke with a halo.
 
-    Parameters
-    ----------
-    stroke : Stroke
-    line_width : float
-        Width of the lines in pixels, where they have no diameter.
-    halo : float, str or None
-        Width of the halo on each side, in widths of the line. None for one width, or 2 pixels where
-        that is more; a colour for a narrower one in it.
-
-    Returns
-    -------
-    Stroke
+    ``line_width`` is in pixels, where lines have no diameter. ``halo`` is its width on each side,
+    in widths of the line; None for one width, or 2 pixels where that is more; a colour for a
+    narrower one in it.
     """
     if halo is None or isinstance(halo, str):
         stroke = stroke._replace(outline=halo)
@@ -129,13 +111,7 @@ def with_halo(stroke: Stroke, line_width: float, halo: float | str | None) -> St
 
 
 def color_of_halo(stroke: Stroke, renderer: vtkRenderer) -> tuple[float, float, float]:
-    """Return the colour of the halos of lines: that of the ground, if they have no other.
-
-    Parameters
-    ----------
-    stroke : Stroke
-    renderer : vtkRenderer
-    """
+    """Return the colour of the halos of lines: that of the ground, if they have no other."""
     if stroke.outline is not None:
         return pv.Color(stroke.outline).float_rgb
     red, green, blue = renderer.GetBackground()
@@ -150,17 +126,8 @@ def shares_of(mesh: pv.DataSet, width: str) -> Array:
 def directions(mesh: pv.DataSet, width: str | None = None) -> Array:
     """Return the directions of lines at their points, with lengths that say how they are drawn.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Lines.
-    width : str, optional
-        Name of the point array of widths, as of :class:`Stroke`.
-
-    Returns
-    -------
-    ndarray of float64, shape (n_points, 3)
-        Vectors of length 1, longer by 1 at the ends of lines, and by half of the width.
+    Vectors have the length 1, longer by 1 at the ends of lines, and by half of the width, of the
+    point array ``width``.
     """
     lengths = 1 + polylines.of_points(mesh, _ends)
     if width is not None:
@@ -181,14 +148,8 @@ def _ends(points: Array, ids: Indices, offsets: Indices) -> Array:
 def widen(actor: vtkActor, stroke: Stroke, last: Iterable[Replacement] = ()) -> None:
     """Draw the lines of an actor as a stroke says, in the colours that they have.
 
-    The active normals of the drawn mesh are the :func:`directions` of its lines.
-
-    Parameters
-    ----------
-    actor : vtkActor
-    stroke : Stroke
-    last : iterable of Replacement
-        Further texts in place of VTK's.
+    The active normals of the drawn mesh are the :func:`directions` of its lines. ``last`` are
+    further texts in place of VTK's.
     """
     actor.GetProperty().SetInterpolationToGouraud()
     ended = [END] if stroke.halo or stroke.width else []
@@ -244,12 +205,7 @@ def lay_on_surfaces(renderer: Foreign) -> None:
 
 
 def line_samples(renderer: vtkRenderer) -> float:
-    """Return the width of a line that a renderer draws one pixel wide.
-
-    Parameters
-    ----------
-    renderer : vtkRenderer
-    """
+    """Return the width of a line that a renderer draws one pixel wide."""
     return SUPERSAMPLED if has_pass(renderer.GetPass(), "vtkSSAAPass") else 1.0
 
 
@@ -273,18 +229,9 @@ def widened(
 ) -> list[Replacement]:
     """Return replacements that draw lines as quads of a width, which the actor is set to.
 
-    Parameters
-    ----------
-    actor : vtkActor
-        Actor of lines.
-    replacements : iterable of Replacement
-        Texts that pass values to the fragments, and their light; with ``ALONG`` the quads of a line
-        join.
-    stroke : Stroke
-        Width of the lines, and of their halos.
-    numbers : sequence of Uniform, optional
-        Numbers of a light that is smooth within segments. It is computed at three places of each
-        in place of in each fragment, of which a halo has more than its line.
+    Replacements pass values to the fragments, and their light; with ``ALONG`` the quads of a line
+    join. ``numbers`` are those of a light that is smooth within segments: it is computed at three
+    places of each in place of in each fragment, of which a halo has more than its line.
     """
     # Lines as tubes are quads that VTK makes in a shader, whatever width a driver can draw.
     prop = actor.GetProperty()

@@ -144,18 +144,8 @@ class Writer(Algebra):
 def needed(lines: Iterable[str], declared: str, roots: Iterable[str]) -> list[str]:
     """Return the lines that other lines need, of a program that defines each name once.
 
-    Parameters
-    ----------
-    lines : iterable of str
-        Statements in order.
-    declared : str
-        Pattern of a statement that gives a name, with the name as its group.
-    roots : iterable of str
-        Texts with the names that are needed.
-
-    Returns
-    -------
-    list of str
+    Lines are statements in order, ``declared`` is the pattern of one that gives a name, with the
+    name as its group, and ``roots`` are texts with the names that are needed.
     """
     words = {word for text in roots for word in re.findall(r"\w+", text)}
     kept = []

@@ -16,15 +16,7 @@ MOST, WASTE = 10, 1.1
 
 
 def even_levels(low: float, high: float, most: int = 5) -> list[float]:
-    """Return at most some round numbers within a range.
-
-    Parameters
-    ----------
-    low, high : float
-        Ends of the range.
-    most : int, default: 5
-        Largest number of numbers.
-    """
+    """Return at most some round numbers within a range."""
     if not low < high:
         return [low]
     rough = (high - low) / max(most - 1, 1)
@@ -64,13 +56,7 @@ def even_numbers(low: float, high: float, most: int = 5) -> list[tuple[float, st
 
 
 def even_ends(low: float, high: float) -> tuple[float, float]:
-    """Return the ends of a bar: round numbers just outside of a range, where they waste little.
-
-    Parameters
-    ----------
-    low, high : float
-        Ends of the range.
-    """
+    """Return the ends of a bar: round numbers just outside of a range, where they waste little."""
     for most in range(FEW, MOST):
         levels = even_levels(low, high, most)
         if len(levels) < 2:
@@ -85,13 +71,7 @@ def even_ends(low: float, high: float) -> tuple[float, float]:
 
 
 def along_bar(low: float, high: float) -> list[tuple[float, str]]:
-    """Return the numbers along a bar and their digits: those at both ends too if these are round.
-
-    Parameters
-    ----------
-    low, high : float
-        Ends of the bar.
-    """
+    """Return numbers along a bar and their digits: those at both ends too if these are round."""
     for most in range(FEW, MOST + 1):
         ticks = even_numbers(low, high, most)
         if ticks and (ticks[0][0], ticks[-1][0]) == (low, high):

@@ -237,18 +237,9 @@ def fur(
 class Grown(NamedTuple):
     """Fur that has grown and is not lit.
 
-    Attributes
-    ----------
-    surface : pyvista.PolyData
-        Surface on which it stands.
-    parts : list of (ShadingInputs, ShadingOptions)
-        Inputs and options of the light of the fibres and of the skin.
-    origin : vector of 3 components
-        Vector that was subtracted from the points.
-    inside : int
-        Number of fibres whose vectors point into the surface.
-    dimmings : list of Dimming
-        Shares of light inside a bundle.
+    ``parts`` are inputs and options of the light of the fibres and of the skin. ``origin`` was
+    subtracted from the points, ``inside`` is the number of fibres with vectors that point into the
+    surface, and ``dimmings`` are shares of light inside a bundle.
     """
 
     surface: pv.PolyData

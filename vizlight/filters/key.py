@@ -151,15 +151,7 @@ def key(
 def color_below(table: pv.LookupTable) -> Array | None:
     """Return the colour of values below a bar, None where it is that of the bar's end.
 
-    Parameters
-    ----------
-    table : pyvista.LookupTable
-        Colours of the bar.
-
-    Returns
-    -------
-    ndarray, shape (3,), or None
-        Red, green and blue, from 0 to 1.
+    It is red, green and blue, from 0 to 1.
     """
     color: Array = np.asarray(table.GetBelowRangeColor()[:3], dtype=np.float64)
     first = np.asarray(table.values)[0, :3] / 255
@@ -211,21 +203,7 @@ def _question(name: str) -> Question:
 
 
 def question_of(scene: Scene) -> str:
-    """Return the question of the preset with the light of a scene, ``"shape"`` for other light.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    TypeError
-        If it is no scene.
-    """
+    """Return the question of the preset with the light of a scene, ``"shape"`` for other light."""
     return preset_of(scene) or "shape"
 
 
@@ -242,22 +220,7 @@ def colors_of(
 ) -> NDArray[np.uint8]:
     """Return the colours of a key at places of its plane; see :func:`key`.
 
-    Parameters
-    ----------
-    scene : Scene
-    x, y : ndarray, shape (N,)
-        Places: of a disc of radius 1, or of a bar of width 2 and its height.
-    question, exponent, conditioned, cmap
-        As for :func:`key`.
-
-    Returns
-    -------
-    ndarray of uint8, shape (N, 3)
-
-    Raises
-    ------
-    TypeError, ValueError
-        As :func:`key`.
+    Places are of a disc of radius 1, or of a bar of width 2 and its height.
     """
     form = _question(question).key
     seen = _in_frame_of_eye(scene)

@@ -101,12 +101,7 @@ def light(
 ) -> tuple[list[engine.Shading], Scene]:
     """Light all inputs, each by its options.
 
-    Returns
-    -------
-    list of Shading
-        Light of each.
-    Scene
-        Scene with both ends of its depth cue.
+    The scene that is returned has both ends of its depth cue.
     """
     # One range of depth for all parts: a cue that began anew in each block would lie.
     fitted = fit_depth_cue(scene, [inputs.points for inputs, _ in parts])

@@ -73,16 +73,9 @@ class ReliefOptions(CasterOptions):
 class Shadows(NamedTuple):
     """The shadows on a surface, before they are cast.
 
-    Attributes
-    ----------
-    surface : pyvista.DataSet
-        Surface with its points split at sharp edges.
-    caster : FieldCaster or SolidCaster
-        What the rays of the lights pass.
-    lights : list of Light
-        Lights of intensity above 0, where the view has them.
-    share : ndarray or None
-        Share of the ambient light that reaches the points.
+    The surface has its points split at sharp edges; rays of the lights pass the ``caster``. The
+    lights have an intensity above 0, where the view has them, and ``share`` is that of the ambient
+    light that reaches the points.
     """
 
     surface: Grid | pv.PolyData

@@ -148,28 +148,10 @@ def from_record(
 ) -> tuple[list[Source], Scene]:
     """Return the sources that a filter lit on the meshes it returned, and the scene.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet or pyvista.MultiBlock
-        Result of :func:`vizlight.illuminate`, ``streamlines``, ``satin``, ``project``, ``fur`` or,
-        with ``lit=True``, ``relief_shadow``.
-    scene : Scene, optional
-        Scene in place of the recorded one.
-    name : str, default: "luminance"
-        Name of the light.
-
-    Returns
-    -------
-    list of Source
-        One for each block.
-    Scene
-        Scene of the record, or the given one.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a record of the light is missing or does not suffice, or the light of the record differs
-        from the mesh's, because points or arrays have changed.
+    The mesh is the result of :func:`vizlight.illuminate`, ``streamlines``, ``satin``, ``project``,
+    ``fur`` or, with ``lit=True``, ``relief_shadow``, and ``scene`` takes the place of the recorded
+    one. An error is raised if a record of the light is missing or does not suffice, or the light of
+    the record differs from the mesh's, because points or arrays have changed.
     """
     sources, recorded = _read_record(mesh, scene, name)
     refuse_following(sources, recorded)

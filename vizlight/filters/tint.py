@@ -402,15 +402,7 @@ def map_colors(table: pv.LookupTable, values: Raw, *, components: Literal[3, 4] 
 def light_on_colors(sources: Sequence[relight.Source], scene: Scene) -> list[tuple[Array, Bools]]:
     """Return for each source the light on colours of data, and a mask of the lit points.
 
-    Parameters
-    ----------
-    sources : sequence of Source
-    scene : Scene
-
-    Returns
-    -------
-    list of (ndarray, ndarray of bool)
-        Each of shape (N,), as :func:`vizlight.shading.display.on_colors` takes them.
+    Both have the shape (N,), as :func:`vizlight.shading.display.on_colors` takes them.
     """
     plain = display.for_colors(scene)
     parts = [(source.seen_from(scene.view, source.inputs), source.options) for source in sources]

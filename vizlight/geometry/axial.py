@@ -20,16 +20,8 @@ FEWEST, MOST = 36, 1 << 13
 class ShapeLight:
     """One light and its reflection, of luminance ``low + scale cosine^power fading``.
 
-    Attributes
-    ----------
-    toward : ndarray, shape (3,)
-        Unit vector from the shape's centre toward the light.
-    distance : float
-        Distance of the light from the centre; infinite for a light at infinity.
-    low, scale, power : float
-        Luminance without light, factor of the lit part, and exponent of the cosine.
-    attenuation : (c1, c2, c3)
-        Coefficients of the fading with distance.
+    ``toward`` is the unit vector from the shape's centre to the light, at the ``distance``,
+    infinite for a light at infinity; ``attenuation`` has the coefficients of the fading.
     """
 
     toward: Array

@@ -130,18 +130,8 @@ _HEIGHTS = re.compile(
 class Named:
     """One array, or several that are the components of one vector.
 
-    Parameters
-    ----------
-    name : str
-        Name; of components their names, separated by commas.
-    role : str
-        Part that it can have in a picture.
-    of_cells : bool
-        Whether it has a row for each cell.
-    distinct : int
-        Number of distinct values in a sample.
-    low, high : float
-        Range in a sample.
+    ``name`` of components has their names, separated by commas; ``role`` is the part that it can
+    have in a picture, ``distinct``, ``low`` and ``high`` are of a sample.
     """
 
     name: str
@@ -161,15 +151,9 @@ class Named:
 class Contents:
     """Contents of a mesh, from a sample of its points and cells.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh.
-    raster : bool
-        Whether it comes from a file of a raster, with heights as its only band, or is a terrain by
-        its shape, laid flat.
-    without : tuple of str
-        Names of arrays that are used for the light, such as normals, and are not shown.
+    A ``raster`` comes from a file of one, with heights as its only band, or is a terrain by its
+    shape, laid flat. Arrays of ``without`` are used for the light, such as normals, and are not
+    shown.
     """
 
     mesh: pv.DataSet
@@ -331,15 +315,7 @@ def is_of_kinds(name: str) -> bool:
 
 
 def says_heights(mesh: pv.DataSet, name: str) -> bool:
-    """Return whether an array is one of heights by its name or words, and not as an only band.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh.
-    name : str
-        Name of the array.
-    """
+    """Return whether an array is one of heights by its name or words, and not as an only band."""
     return _HEIGHTS.search(f"{name.lower()} {_words_of(mesh, name)}") is not None
 
 
@@ -677,14 +653,7 @@ def _are_regions(mesh: pv.DataSet, values: Raw) -> bool:
 def kinds_of(mesh: pv.DataSet, name: str, most: int | None = None) -> Sequence[float]:
     """Return the distinct values of an array of kinds, of all its rows.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh.
-    name : str
-        Name of the array.
-    most : int, optional
-        Number of kinds from which the largest alone are returned, if these fill nearly all.
+    From ``most`` kinds on the largest alone are returned, if these fill nearly all.
     """
     values = np.asarray(mesh.point_data[name] if name in mesh.point_data else mesh.cell_data[name])
     kinds, counts = np.unique(values[np.isfinite(values)], return_counts=True)

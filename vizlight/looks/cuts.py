@@ -19,18 +19,8 @@ RANGE = "NAME:LOW:HIGH, such as Temp:300:600 or Temp:300:"
 def plane(name: str, value: object) -> tuple[Vector, Vector]:
     """Return the normal and the origin of a plane.
 
-    Parameters
-    ----------
-    name : str
-        Option.
-    value : str or pair of vectors
-        ``NORMAL:OFFSET``, a direction or the name of an axis and the distance of the plane from
-        the origin along it, or the normal and a point of the plane.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is neither.
+    The value is ``NORMAL:OFFSET``, a direction or the name of an axis and the distance of the plane
+    from the origin along it, or the normal and a point of the plane.
     """
     if not isinstance(value, str):
         expected = f"{PLANE}, or a normal and an origin"
@@ -49,17 +39,7 @@ def plane(name: str, value: object) -> tuple[Vector, Vector]:
 def interval(name: str, value: object) -> tuple[str, float, float]:
     """Return the name of an array and the ends of a range, infinite where one is empty.
 
-    Parameters
-    ----------
-    name : str
-        Option.
-    value : str or (str, float, float)
-        ``NAME:LOW:HIGH``, of which one end may be empty, or the three.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is neither, or the lower end is above the higher.
+    The value is ``NAME:LOW:HIGH``, of which one end may be empty, or the three.
     """
     if not isinstance(value, str):
         array, *ends = _parts(name, value, 3, f"{RANGE}, or a name and two numbers")
@@ -86,14 +66,7 @@ def interval(name: str, value: object) -> tuple[str, float, float]:
 def several(name: str, value: object, read: Callable[[str, object], T]) -> list[T]:
     """Return each of several cuts; one alone needs no list.
 
-    Parameters
-    ----------
-    name : str
-        Option.
-    value : object
-        What ``read`` takes, or a list of it.
-    read : callable
-        :func:`plane` or :func:`interval`.
+    ``read`` is :func:`plane` or :func:`interval`.
     """
     return [read(name, each) for each in (value if isinstance(value, list) else [value])]
 

@@ -24,21 +24,8 @@ def exposure_seen(
 ) -> float:
     """Return the exposure at which the 70th percentile of the light that is seen becomes 1.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Surface; other meshes are not exposed.
-    scene : Scene
-        Lights, material and view.
-    camera : pyvista.Camera
-        Camera of the picture.
-    light : mapping
-        Options of :func:`vizlight.illuminate` by which it is lit.
-
-    Returns
-    -------
-    float
-        Factor in two digits, by the light of a thousand triangles; 1 where none is seen.
+    It has two digits, by the light of a thousand triangles of a surface, and is 1 for other meshes
+    and where none is seen; ``light`` has options of :func:`vizlight.illuminate`.
     """
     if not isinstance(mesh, pv.PolyData):
         return 1.0

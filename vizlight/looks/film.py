@@ -169,13 +169,7 @@ def _looks(
 class _Flow:
     """Strokes of a look at one step, that can be carried.
 
-    Parameters
-    ----------
-    look : Look
-    layer : Layer
-        Layer of the strokes.
-    mesh : pyvista.DataSet
-        Flat sheet or volume of the vectors.
+    The mesh is the flat sheet or volume of the vectors.
     """
 
     look: vizlight.Look
@@ -225,16 +219,8 @@ class _Flow:
     ) -> Iterator[Picture]:
         """Yield the pictures from this step to before the next, one of the last step.
 
-        Parameters
-        ----------
-        drift : Drift
-            Strokes as they are at this step.
-        then : _Flow, optional
-            Strokes of the next step.
-        lasts : float
-            Time of a step.
-        count : int
-            Number of pictures from step to step.
+        The drift has strokes as they are at this step, ``then`` those of the next; ``lasts`` is the
+        time of a step, and ``count`` the number of pictures from step to step.
         """
         here = self.vectors
         at = here if then is None else then.vectors
@@ -274,15 +260,7 @@ def _drawn(plotter: pv.Plotter, layers: Iterable[Layer | None]) -> Iterator[Pict
 
 
 def step(look: vizlight.Look, path: Path) -> Step | None:
-    """Return the step that saves a movie of all steps of the series of a look, None for no series.
-
-    Parameters
-    ----------
-    look : Look
-        Look at one step.
-    path : pathlib.Path
-        Path of the movie.
-    """
+    """Return the step that saves a movie of all steps of the series of a look, None without one."""
     reads = [each for each in in_order([look.drawing.lit]) if each.path == "vizlight.read"]
     chosen = look.wishes.steps
     if len(reads) != 1 or (reads[0].keywords.get("time") is not None and not chosen):
@@ -388,12 +366,7 @@ def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str)
 def _in_bands(values: Array, unit: float) -> Keywords:
     """Return the range of the bands between isolines that hold the values of all steps.
 
-    Parameters
-    ----------
-    values : ndarray
-        Values in the unit in which they are read.
-    unit : float
-        This unit, in that of the array.
+    Values are in the unit in which they are read, ``unit`` is that in the one of the array.
     """
     ends = float(values.min()), float(values.max())
     edges = classes(even_levels(*ends, map_parts.LEVELS[0]), ends)

@@ -27,22 +27,10 @@ FEWEST = 30
 def best_level(mesh: pv.DataSet, name: str, *, share: float = 1.0) -> tuple[float, float]:
     """Return the level with an isosurface through the steepest cells, and their steepness.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Volume.
-    name : str
-        Name of an array of one component.
-    share : float, default: 1.0
-        Share of the steepness of the best level with which the lowest is taken.
-
-    Returns
-    -------
-    level : float
-        Value of the isosurface, of few digits.
-    contrast : float
-        Mean gradient of the cells that it crosses, as a multiple of the mean of all cells of the
-        sample; 1 for values that rise evenly, 0 where no level crosses enough cells.
+    ``share`` is that of the steepness of the best level with which the lowest is taken. The level
+    has few digits; the steepness is the mean gradient of the cells that it crosses, as a multiple
+    of the mean of all cells of the sample: 1 for values that rise evenly, 0 where no level crosses
+    enough cells.
     """
     low, high, steep = _cells(mesh, name)
     kept = np.isfinite(low) & np.isfinite(high) & np.isfinite(steep)

@@ -57,13 +57,7 @@ ABOVE_BALL, BELOW_BALL = 1.002, 0.97
 
 
 def named(parts: object) -> tuple[str, ...]:
-    """Return the names of parts of a map: of a sequence, or of a text such as "coasts,frame".
-
-    Raises
-    ------
-    ValueError
-        If they are none of :data:`PARTS`, nor "none" alone.
-    """
+    """Return the names of parts of a map: of a sequence, or of a text such as "coasts,frame"."""
     names = parts.split(",") if isinstance(parts, str) else parts
     names = () if isinstance(parts, str) and parts == "none" else names
     if not isinstance(names, list | tuple) or not all(name in PARTS for name in names):
@@ -126,27 +120,12 @@ def isolines(
 ) -> tuple[Step, list[float], float] | None:
     """Return the step that makes the isolines of a map, their levels as written, and their unit.
 
-    None where the field is not smooth, as few lines tell.
-
-    Parameters
-    ----------
-    mesh : Step
-        Step of the map.
-    array : Named
-        Array of values.
-    ends : (float, float)
-        Range of the values in the unit of the array.
-    letters : float
-        Height of letters of the frame, in the unit of the map.
-    coasts : Step, optional
-        Step of lines of which the numbers keep clear.
-    sparse : float
-        Least distance between lines, in heights of their letters.
-    always : bool, default: False
-        Whether a field that is not smooth gets lines too, as few as there can be.
-    edges : sequence of float
-        Values in even steps at which colours change, in the unit in which they are read, of which
-        all, or every second one, are the levels. Default: round values.
+    None where the field is not smooth, as few lines tell. ``ends`` are those of the values in the
+    unit of the array; ``letters`` is their height in the frame, in the unit of the map, and
+    ``sparse`` the least distance between lines in such heights. Numbers keep clear of the lines
+    ``coasts``; with ``always`` a field that is not smooth gets a few lines too. ``edges`` are
+    values in even steps at which colours change, in the unit in which they are read, of which all,
+    or every second one, are the levels, by default round values.
     """
     if mesh.run().n_points > MOST_POINTS:
         return None

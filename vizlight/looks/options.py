@@ -63,13 +63,7 @@ OF_LIDAR = {"intensity", "classification"}
 
 
 def checked(options: Mapping[str, Given]) -> Keywords:
-    """Return options of the part, the camera and the picture, with their texts read.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a value does not fit, or two options do not go together.
-    """
+    """Return options of the part, the camera and the picture, with their texts read."""
     if options.get("slice") is not None and options.get("contour") is not None:
         raise value_error("slice", "no contour beside it", "both")
     return {
@@ -125,13 +119,7 @@ def sorted_out(
     style: str,
     options: dict[str, Given],
 ) -> Wishes:
-    """Return the options of a look, each in its group.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a name is unknown, or a value does not fit.
-    """
+    """Return the options of a look, each in its group."""
     _check.choice("style", style, tuple(STYLES))
     if array is not None:
         _check.text("array", array, expected="the name of an array")
@@ -153,13 +141,7 @@ def sorted_out(
 
 
 def scene_maker(scene: Foreign) -> SceneMaker | None:
-    """Return the function that makes the step of a scene that was given: a value or a preset.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is neither.
-    """
+    """Return the function that makes the step of a scene that was given: a value or a preset."""
     if scene is None:
         return None
     if isinstance(scene, str):
@@ -343,13 +325,7 @@ def with_heights(step: Step, contents: Contents, wishes: Wishes) -> tuple[Step, 
 
 
 def check_flow(file: object, mesh: pv.DataSet, name: str | None) -> None:
-    """Check that a step of a file has vectors that are not zero, if another step has them.
-
-    Raises
-    ------
-    ValueError
-        If only others have, which the message lists.
-    """
+    """Check that a step of a file has vectors that are not zero, if another step has them."""
     times = series.of(mesh)
     name = vectors_by_default(mesh) if name is None else name
     if not isinstance(file, str | Path) or len(times) < 2 or _moves(mesh, name):

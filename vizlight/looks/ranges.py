@@ -48,18 +48,10 @@ DIGITS = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
 class Range(NamedTuple):
     """Range of a bar of colours.
 
-    Attributes
-    ----------
-    low, high : float
-        Ends.
-    logarithmic : bool
-        Whether equal ratios have equal lengths.
-    clipped : (bool, bool)
-        Whether values lie below the lower, and above the upper end.
-    apart : bool
-        Whether those below are nearly all one value, such as a 0 where nothing was measured.
-    ground : bool
-        Whether those below are amounts of nearly nothing, such as rain where it is dry.
+    Equal ratios have equal lengths if it is ``logarithmic``; ``clipped``: values lie below the
+    lower, and above the upper end. Those below are nearly all one value ``apart``, such as a 0
+    where nothing was measured, or amounts of nearly nothing, a ``ground``, such as rain where it is
+    dry.
     """
 
     low: float
@@ -103,10 +95,7 @@ class Range(NamedTuple):
 def range_of_turn(values: Array) -> Range | None:
     """Return the whole turn in degrees that directions are in, None where they are in no such.
 
-    Parameters
-    ----------
-    values : ndarray
-        Finite values, one at least.
+    Values are finite, one at least.
     """
     low, high = float(values.min()), float(values.max())
     first = 0.0 if low >= 0 else -180.0
@@ -117,10 +106,7 @@ def range_of_turn(values: Array) -> Range | None:
 def range_of_scan(values: Array) -> Range:
     """Return the range of a bar of the values of a scan in grey: its brightest hundredth is white.
 
-    Parameters
-    ----------
-    values : ndarray
-        Finite values, one at least.
+    Values are finite, one at least.
     """
     low, high = float(values.min()), float(values.max())
     end = float(np.percentile(values, BRIGHTEST))
@@ -134,22 +120,10 @@ def range_shown(
 ) -> Range:
     """Return the range of a bar that shows values.
 
-    Parameters
-    ----------
-    values : ndarray
-        Finite values, one at least.
-    lengths : bool
-        Whether they are lengths of vectors, with a bar that may be logarithmic.
-    amounts : bool
-        Whether they may be amounts on a map, with such a bar, and a ground where they are 0.
-    decades : bool
-        Whether they are such as permeabilities, with such a bar where they differ by much.
-
-    Returns
-    -------
-    Range
-        From the least to the largest value, or round numbers near them; of most values alone where
-        few others take much of the bar; of decades where lengths are skewed.
+    It is from the least to the largest finite value, or round numbers near them; of most values
+    alone where few others take much of the bar; of decades where ``lengths`` of vectors are skewed,
+    and where ``decades``, such as permeabilities, differ by much. ``amounts`` on a map have such a
+    bar too, and a ground where they are 0.
     """
     low, high = float(values.min()), float(values.max())
     others = values[values > low]
@@ -217,13 +191,7 @@ def range_shown(
 def with_regions(shown: Range, values: Array, beyond: Callable[[Range], float]) -> Range:
     """Return a range that ends where most values do, or that of all where regions lie beyond.
 
-    Parameters
-    ----------
-    shown : Range
-    values : ndarray
-        Finite values, one at least.
-    beyond : callable
-        Returns the share of the mesh in regions beyond the ends of a range.
+    ``beyond`` returns the share of the mesh in regions beyond the ends of a range.
     """
     if not any(shown.clipped) or shown.logarithmic or shown.apart or shown.ground:
         return shown
@@ -236,14 +204,6 @@ def share_beyond(mesh: pv.DataSet, beyond: Bools, *, of_cells: bool) -> float:
     """Return the share of a mesh in cells whose points, and their cells, are all beyond an end.
 
     Values of noise are alone, so that their cells have others too.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    beyond : ndarray
-        Whether each value is beyond an end.
-    of_cells : bool
-        Whether they are those of cells.
     """
     flags = mesh.copy(deep=False)
     flags.clear_data()

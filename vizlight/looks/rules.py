@@ -21,20 +21,9 @@ from vizlight.vtk.cells import dimensions
 class Rule:
     """One row of the table.
 
-    Parameters
-    ----------
-    shown : str
-        Kind of drawing.
-    fits : callable
-        Predicate on the contents.
-    question : str
-        Question of the light: a preset, ``"relief"``, or ``"none"`` where nothing bends.
-    roles : tuple of str
-        Roles of the array that is shown, the data having at least one; empty for none.
-    recipe : callable
-        Function that draws it.
-    why : str
-        Kind of the data, in words.
+    ``shown`` is the kind of drawing, ``fits`` a predicate on the contents, and ``question`` that of
+    the light: a preset, ``"relief"``, or ``"none"`` where nothing bends. ``roles`` are those of the
+    array that is shown, the data having at least one; ``why`` is the kind of the data in words.
     """
 
     shown: str

@@ -31,15 +31,10 @@ ONE_LINE = -(10**6)
 class Step:
     """One call, whose arguments may be results of other steps.
 
-    Parameters
-    ----------
-    name : str
-        Name of the variable that holds the result; without one the call stands where it is used.
-    path : str
-        Dotted path of a public function; ``.name`` is a method of the first argument, ``.name=`` an
-        attribute of it that is set, ``[]`` an item of it, and ``-`` a value that a script has.
-    *arguments, **keywords : object
-        Arguments: plain values, steps, or lists and tuples of them.
+    ``name`` is the variable that holds the result; without one the call stands where it is used.
+    ``path`` is that of a public function; ``.name`` is a method of the first argument, ``.name=``
+    an attribute of it that is set, ``[]`` an item of it, and ``-`` a value that a script has.
+    Arguments are plain values, steps, or lists and tuples of them.
     """
 
     def __init__(self, name: str, path: str, /, *arguments: object, **keywords: object) -> None:

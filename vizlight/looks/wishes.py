@@ -120,46 +120,16 @@ def even_light(camera: Step) -> Step:
 class Wishes:
     """Options of a look.
 
-    Parameters
-    ----------
-    question, array : str
-        As for :func:`vizlight.look`.
-    view : str, sequence of float or pyvista.Camera, optional
-        As for :func:`vizlight.look`.
-    size : (int, int)
-        Width and height in pixels.
-    style : {"paper", "dark"}
-        Background.
-    part : mapping
-        Parts of the data: time, overlay, at, nodata, clip, threshold, contour, level,
-        slice, warp, exaggeration.
-    light : mapping
-        Options of the filter that lights.
-    eye : mapping
-        Options of the camera: up, parallel, zoom.
-    picture : mapping
-        Options of the picture: background, line_width, cmap, clim, scalars, key, map_parts,
-        backend, title; and of a movie: frames, fps.
-    make_scene : callable, optional
-        Function that returns the step of the scene.
-    surface : bool
-        Whether the outer surface is taken; otherwise all points are lit.
-    refine : float, optional
-        Largest error between points.
-    frame : Step, optional
-        Step of a camera that several meshes share.
-    views : Views, optional
-        Views that stand beside each other.
-    strip : Strip, optional
-        Insets beside or below the main view.
-    bar : str
-        Unit of a bar of lengths below the data, which stands where nothing else says lengths.
-    wide : bool
-        Whether a map is so wide that its key lies below it.
-    steps : sequence of float
-        Times of the steps of a movie. Default: all.
-    source : sequence of str
-        File, and options of the command that shows it alike, which a page copies.
+    ``question``, ``array`` and ``view`` are as for :func:`vizlight.look`; ``style`` is "paper" or
+    "dark". ``part`` has parts of the data: time, overlay, at, nodata, clip, threshold, contour,
+    level, slice, warp, exaggeration; ``light`` the options of the filter that lights; ``eye`` those
+    of the camera: up, parallel, zoom; ``picture`` those of the picture: background, line_width,
+    cmap, clim, scalars, key, map_parts, backend, title; and of a movie: frames, fps. ``surface``:
+    the outer surface is taken, not all points; ``refine`` is the largest error between points.
+    Several meshes share the ``frame`` of a camera. ``bar`` is the unit of a bar of lengths below
+    the data, which stands where nothing else says lengths, and a map is so ``wide`` that its key
+    lies below it. ``steps`` are times of a movie, by default all, and ``source`` is the file, and
+    options of the command that shows it alike, which a page copies.
     """
 
     question: str = "auto"
@@ -199,13 +169,7 @@ class Wishes:
         return (self.make_scene or plain_scene)(question, view, camera, 3)
 
     def scene_in(self, n: int) -> Step:
-        """Return the step that makes a scene of n-space, seen from infinity.
-
-        Raises
-        ------
-        ValueError
-            If the view has neither 3 nor n components.
-        """
+        """Return the step that makes a scene of n-space, seen from infinity."""
         toward: Vector = (1.0, 1.0, 1.0)
         fixed: Foreign = self.view
         if hasattr(fixed, "GetPosition"):
@@ -230,16 +194,9 @@ class Wishes:
     ) -> Step:
         """Return the step that sets the camera on a mesh, with room for axes and for a key.
 
-        Parameters
-        ----------
-        mesh : Step or sequence of paths
-            Step of the mesh.
-        eye : Viewpoint
-            From where it is seen, where no view was given.
-        axes : sequence of str
-            Names of axes along the edges of its box.
-        key : float or None
-            Width of the key as a share of the shorter side, 0 for a title alone, None for neither.
+        The eye counts where the user gave no view; ``axes`` are names along the edges of its box,
+        and ``key`` is the width of the key as a share of the shorter side, 0 for a title alone,
+        None for neither.
         """
         up, zoom = self.eye.get("up"), self.eye.get("zoom", 1.0)
         fixed = self.frame or self.fixed_camera()
@@ -418,13 +375,7 @@ class Wishes:
         return step
 
     def globe(self, mesh: Step) -> Step:
-        """Return the step that puts a map of the whole earth on a ball.
-
-        Raises
-        ------
-        ValueError
-            If it is no map in degrees, or not around the earth.
-        """
+        """Return the step that puts a map of the whole earth on a ball."""
         flat = mesh.run()
         if not is_whole_earth(flat):
             wide = float(flat.bounds_size[0]) if georeference.has_degrees(flat) else None
@@ -464,13 +415,7 @@ class Wishes:
 
 
 def direction(view: object, *, n: int | None = 3) -> Vector:
-    """Return the direction toward the eye of a view: a name, or n numbers.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is neither.
-    """
+    """Return the direction toward the eye of a view: a name, or n numbers."""
     if isinstance(view, str):
         if view not in VIEWS:
             expected = f"a direction (x, y, z), a camera, or one of {', '.join(map(repr, VIEWS))}"

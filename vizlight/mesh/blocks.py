@@ -53,15 +53,7 @@ def plain_surface(mesh: pv.DataSet) -> pv.PolyData:
 
 
 def surface(mesh: object, name: str) -> pv.PolyData:
-    """Return a mesh with faces: the mesh itself, or the outer surface of another or of its blocks.
-
-    Raises
-    ------
-    TypeError
-        If it is no mesh.
-    ValueError
-        If it has no faces.
-    """
+    """Return a mesh with faces, or the outer surface of another mesh or of its blocks."""
     if isinstance(mesh, pv.MultiBlock):
         mesh = one_grid(mesh)
     if not isinstance(mesh, pv.DataSet):

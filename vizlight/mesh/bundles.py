@@ -32,16 +32,10 @@ TRANSMITTANCE = "transmittance"
 class Dimming(NamedTuple):
     """The shares of light that reach the points of a mesh, and a record of them.
 
-    Attributes
-    ----------
-    transmittance : ndarray of float32, shape (N, L)
-        Share of each light of intensity above 0.
-    record : dict
-        Diameter, side of a voxel, and digests of the sources of the shares; for each light the
-        ``error`` that 95 of 100 points keep to, and the ``mean_error``, of the mean share of the
-        points, as estimated by rays.
-    keys : list of str
-        Position or direction of each light.
+    ``transmittance`` (N, L) is the share of each light of intensity above 0; their positions or
+    directions are the ``keys``. The record has the diameter, the side of a voxel and digests of the
+    sources of the shares; for each light the ``error`` that 95 of 100 points keep to, and the
+    ``mean_error``, of the mean share of the points, as estimated by rays.
     """
 
     transmittance: Array
@@ -69,31 +63,10 @@ def dim(
 ) -> list[Dimming]:
     """Return the shares of light that reach the points of meshes inside a bundle of lines.
 
-    Parameters
-    ----------
-    meshes : sequence of pyvista.DataSet
-        Meshes that are lit.
-    inputs : sequence of ShadingInputs
-        Their points with tangents or normals.
-    scene : Scene
-        Lights, in the unit of the meshes, and the view that headlights follow.
-    bundle : Bundle
-        Options of the lines that dim the light.
-    names : tuple of str
-        Names of the luminance and the transmittance. Shares that a mesh has under that name are
-        used again where nothing that they depend on has changed.
-    progress : callable
-        Function that is called with the number of grids that are done, and of all.
-
-    Returns
-    -------
-    list of Dimming
-        One for each mesh.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If there are no lines, or points that are not in 3-space.
+    ``inputs`` are the points of the meshes with tangents or normals, the scene is in the unit of
+    the meshes, and ``names`` are those of the luminance and the transmittance: shares that a mesh
+    has under that name are used again where nothing that they depend on has changed. ``progress``
+    takes the number of grids that are done, and of all.
     """
     work, lights = Work(meshes, inputs, bundle), _lights(scene)
     dimmings: list[Dimming] = []
@@ -109,13 +82,7 @@ def dim(
 
 
 class Work:
-    """The lines that dim meshes, and their medium, which is computed once it is needed.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If there are no lines, or points that are not in 3-space.
-    """
+    """The lines that dim meshes, and their medium, which is computed once it is needed."""
 
     def __init__(
         self, meshes: Sequence[pv.DataSet], inputs: Sequence[ShadingInputs], bundle: Bundle
@@ -178,16 +145,7 @@ def medium_of(lines: LineSet, bundle: Bundle) -> tuple[Medium, float]:
 class Dimmed:
     """A mesh that lines dim, and the shares that are known of it, one for each light.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh that is lit.
-    inputs : ShadingInputs
-        Its points with tangents or normals.
-    work : Work
-        Lines that dim it.
-    names : tuple of str
-        As for :func:`dim`.
+    ``names`` are as for :func:`dim`.
     """
 
     def __init__(

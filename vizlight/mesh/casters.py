@@ -99,16 +99,9 @@ def caster(mesh: pv.DataSet, scene: Scene, options: CasterOptions) -> FieldCaste
 class EvenField(NamedTuple):
     """Height field of even rows and columns, by which a shader casts shadows.
 
-    Attributes
-    ----------
-    heights : ndarray, shape (ny, nx)
-        Heights above the origin.
-    origin : ndarray, shape (3,)
-        Place of the first node at the height 0, in the unit of the mesh.
-    axes : ndarray, shape (3, 3)
-        Rows by which a vector of the mesh becomes cells along x and y, and a height.
-    depth : float
-        Depth d at which light is gathered.
+    ``heights`` (ny, nx) are above the ``origin``, the place of the first node at the height 0; the
+    rows of ``axes`` take a vector of the mesh to cells along x and y, and a height. ``depth`` is
+    the depth d at which light is gathered.
     """
 
     heights: Array

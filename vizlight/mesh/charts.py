@@ -104,14 +104,8 @@ def chart(mesh: pv.DataSet, /, projection: str | None = None) -> pv.DataSet:
 def suited(mesh: pv.DataSet, *, straight: bool = False, north_up: bool = False) -> str:
     """Return the text of the projection in which a map in degrees is best drawn, empty for none.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Map in degrees.
-    straight : bool, default: False
-        Whether rows and columns must stay straight.
-    north_up : bool, default: False
-        Whether a course is to be the same angle everywhere on the map, where scales allow it.
+    Rows and columns of a ``straight`` one stay so; with ``north_up`` a course is to be the same
+    angle everywhere on the map, where scales allow it.
     """
     if PROJECTION in mesh.field_data and not straight:
         return str(mesh.field_data[PROJECTION][0])
@@ -121,12 +115,7 @@ def suited(mesh: pv.DataSet, *, straight: bool = False, north_up: bool = False) 
 
 
 def is_torn(mesh: pv.DataSet) -> bool:
-    """Return whether a chart reaches around the earth, where its rows would turn back.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return whether a chart reaches around the earth, where its rows would turn back."""
     return float(max(mesh.bounds_size[:2])) > WHOLE * math.tau * projections.RADIUS
 
 
@@ -197,14 +186,8 @@ def _slopes(ahead: Array, behind: Array) -> Array:
 class MapSheet:
     """Map in a plane, with its projection and its outline.
 
-    Attributes
-    ----------
-    plane : Projection
-        Projection.
-    outline : ndarray, shape (N, 2)
-        Corners of the outline, counter-clockwise, each once.
-    metres : float
-        Length of a unit of x and y in metres.
+    The outline (N, 2) is counter-clockwise, each corner once; ``metres`` is the length of a unit of
+    x and y.
     """
 
     plane: Projection
@@ -314,10 +297,7 @@ def _turns(degrees: Foreign) -> Foreign:
 def sheet(mesh: pv.DataSet) -> MapSheet | None:
     """Return a flat map in lengths as a sheet, None where its projection is not known.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Map, of whose projection the field array ``projection`` or ``crs`` tells.
+    Its field array ``projection`` or ``crs`` tells of it.
     """
     names = [name for name in (PROJECTION, "crs") if name in mesh.field_data]
     metres = meaning.metres(georeference.unit_of(mesh))
@@ -336,12 +316,7 @@ def sheet(mesh: pv.DataSet) -> MapSheet | None:
 
 
 def box_of(mesh: pv.DataSet) -> Array:
-    """Return west, east, south and north of a map, with room around one of points.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return west, east, south and north of a map, with room around one of points."""
     is_points = isinstance(mesh, pv.PolyData) and mesh.n_verts == mesh.n_cells
     room = AROUND_POINTS * max(mesh.bounds_size[:2]) if is_points else 0.0
     return np.asarray(mesh.bounds[:4]) + room * np.array([-1, 1, -1, 1])

@@ -133,13 +133,7 @@ def _merged(surface: object, name: str) -> tuple[Array, Indices, Indices, Indice
 
 
 def closed(surface: object, name: str = "mesh") -> tuple[Array, Indices]:
-    """Return the vertices and the consistently oriented triangles of a closed surface.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is not a surface, or not closed; the message says how to repair it.
-    """
+    """Return the vertices and the consistently oriented triangles of a closed surface."""
     vertices, triangles = triangles_of(surface, name)
     if not len(_open_edges(triangles, directed=True)):
         return vertices, triangles
@@ -259,22 +253,9 @@ def inside_length(
 ) -> Array:
     """Return the length of each ray inside the union of the solids.
 
-    Parameters
-    ----------
-    solids : list of Body
-    start, way : ndarray, shape (N, 3)
-        Starting points and unit directions of the rays.
-    reach : ndarray, shape (N,)
-        Lengths of the rays; they end outside all solids.
-    report : callable
-        Function that takes the number of rays that are done, after each block.
+    Rays have unit directions, and end outside all solids; ``report`` takes the number of rays that
+    are done, after each block.
 
-    Returns
-    -------
-    ndarray, shape (N,)
-
-    Notes
-    -----
     A hit on a shared edge is found once for each of its triangles: coincident hits in the same
     direction are merged. A point is inside a solid if the ray beyond it leaves the solid more often
     than it enters it.

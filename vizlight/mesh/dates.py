@@ -53,10 +53,7 @@ _LAST = np.datetime64("9999-12-31")
 def seconds(unit: str) -> float | None:
     """Return the length of a unit of time in seconds; None where it is none.
 
-    Parameters
-    ----------
-    unit : str
-        Name of the unit, such as "hours since 1900-01-01".
+    Units are such as "hours since 1900-01-01".
     """
     name = unit.strip().lower().partition(" ")[0]
     return next((size for words, size in _SECONDS.items() if re.fullmatch(words, name)), None)
@@ -67,14 +64,7 @@ def date(time: float, unit: str) -> str:
 
     Months and years since a day are those of the calendar, and parts of them are parts of that
     month. Calendars of models, and days before 1582-10-15, need cftime, without which they are
-    empty too.
-
-    Parameters
-    ----------
-    time : float
-        Time.
-    unit : str
-        Its unit and calendar, such as "hours since 1900-01-01 06:00, noleap calendar".
+    empty too. The unit is such as "hours since 1900-01-01 06:00, noleap calendar".
     """
     text, _, calendar = unit.strip().partition(", ")
     calendar = calendar.removesuffix(" calendar") or "standard"
@@ -99,15 +89,7 @@ def round_dates(low: float, high: float, unit: str, most: int) -> Iterator[list[
     """Yield round dates within a range of times and their words, ever fewer; none without a day.
 
     Words are those of a year, a month or a day, or of a time of a day, at midnight of the day.
-
-    Parameters
-    ----------
-    low, high : float
-        Ends of the range.
-    unit : str
-        Unit and calendar of the times, as for :func:`date`.
-    most : int
-        Largest number of dates.
+    ``most`` is the largest number of dates, and the unit is as for :func:`date`.
     """
     first, last = date(low, unit), date(high, unit)
     long = (seconds(unit) or 0.0) * (high - low)

@@ -34,23 +34,9 @@ def without_missing(name: str, values: Raw, nodata: float | None = None) -> tupl
     """Return values with NaN where they are missing though the file does not say so.
 
     One value far outside of all others, repeated, that is usual for this: -9999, -32768, 32767,
-    1e20, -3.4e38 and the like.
-
-    Parameters
-    ----------
-    name : str
-        Name of the array, for the words.
-    values : ndarray
-        Values, NaN where they are known to be missing.
-    nodata : float, optional
-        Value that stands for none, in place of the search; NaN for no further one.
-
-    Returns
-    -------
-    ndarray
-        The values themselves where none is missing, else a copy in floating point.
-    str
-        Words with the value and its share.
+    1e20, -3.4e38 and the like. ``nodata`` is sought in place of such a value; NaN ends the search.
+    Values are copied, in floating point, where one is missing; the words have the value and its
+    share.
     """
     if values.dtype.kind not in "iuf" or not values.size:
         return values, ""
@@ -97,15 +83,7 @@ def _outliers(finite: Raw) -> list[float]:
 
 
 def say(path: object, words: Sequence[str]) -> list[str]:
-    """Warn of values that were taken for missing, and return notes of them.
-
-    Parameters
-    ----------
-    path : path
-        Path of the file.
-    words : sequence of str
-        Words of :func:`without_missing`.
-    """
+    """Warn of values that were taken for missing, and return notes of them."""
     if words:
         _check.warn(
             f"file: '{path}': {'; '.join(words)}, far from all other values: they are taken for "
@@ -115,18 +93,7 @@ def say(path: object, words: Sequence[str]) -> list[str]:
 
 
 def checked(nodata: object) -> float | None:
-    """Return a value that stands for none, NaN for no further one.
-
-    Parameters
-    ----------
-    nodata : object
-        Value of a caller.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is no number.
-    """
+    """Return a value that stands for none, NaN for no further one."""
     if nodata is None:
         return None
     if isinstance(nodata, float | np.floating) and math.isnan(nodata):

@@ -37,41 +37,22 @@ RANGE = (1.0, 99.0)
 
 
 def has_degrees(mesh: pv.DataSet) -> bool:
-    """Return whether the x and y of a mesh are said to be in degrees.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return whether the x and y of a mesh are said to be in degrees."""
     return unit_of(mesh) == DEGREE
 
 
 def unit_of(mesh: pv.DataSet) -> str:
-    """Return the unit of the x and y of a mesh, empty where nothing is said of it.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return the unit of the x and y of a mesh, empty where nothing is said of it."""
     return str(mesh.field_data[UNIT][0]) if UNIT in mesh.field_data else ""
 
 
 def in_metres(mesh: DataSetT) -> DataSetT:
     """Return a map in metres east and north of its centre, if it is in degrees.
 
-    A degree of latitude has 111,195 m, one of longitude ``cos(latitude)`` of that, for the
-    latitude of the centre: lengths agree with the ellipsoid's to 0.6 % there, up to 88.9 degrees
-    north or south, and east to west farther from the centre to the ratio of the cosines.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh, which is in degrees if its field array ``unit`` says so.
-
-    Returns
-    -------
-    pyvista.DataSet
-        Copy that shares the arrays, or the mesh itself where it is not in degrees.
+    A degree of latitude has 111,195 m, one of longitude ``cos(latitude)`` of that, for the latitude
+    of the centre: lengths agree with the ellipsoid's to 0.6 % there, up to 88.9 degrees north or
+    south, and east to west farther from the centre to the ratio of the cosines. The copy shares the
+    arrays; a mesh whose field array ``unit`` names no degrees is returned itself.
     """
     if not has_degrees(mesh):
         return mesh
@@ -89,18 +70,8 @@ def rates(mesh: pv.DataSet, places: Array) -> Array:
     """Return the factors that take motion in metres to the coordinates of a map, at places of it.
 
     A degree of longitude is as long as its latitude says: on a map in degrees, or one that was, a
-    wind of equal parts east and north crosses more degrees of longitude than of latitude.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh; one that is no map has factors of 1.
-    places : ndarray, shape (N, 3)
-        Places in the coordinates of the mesh.
-
-    Returns
-    -------
-    ndarray, shape (N, 3)
+    wind of equal parts east and north crosses more degrees of longitude than of latitude. A mesh
+    that is no map has factors of 1.
     """
     result: Array = np.ones((len(places), 3))
     latitudes, scale = places[:, 1], 1.0
@@ -125,18 +96,8 @@ def scale_to_one(mesh: pv.DataSet, traced: pv.DataSet) -> Array:
     """Return the scale of each axis by which a mesh has size 1.
 
     A volume over a map gets one of its own along z: heights in metres or hPa beside degrees would
-    make its cells columns or discs.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh, which may be a map.
-    traced : pyvista.DataSet
-        The mesh itself, or a surface in its coordinates.
-
-    Returns
-    -------
-    ndarray, shape (3,)
+    make its cells columns or discs. The scale is that of the mesh for ``traced``, the mesh itself
+    or a surface in its coordinates.
     """
     x, y, z = traced.bounds_size
     if is_map(mesh) and traced.GetMaxSpatialDimension() == 3 and min(max(x, y), z) > 0:
@@ -148,14 +109,8 @@ def scale_to_one(mesh: pv.DataSet, traced: pv.DataSet) -> Array:
 def motion(mesh: pv.DataSet, traced: pv.DataSet, vectors: Array, scale: Array) -> Array:
     """Return vectors at the points of a mesh in its coordinates, times the scale of each axis.
 
-    Parameters
-    ----------
-    mesh, traced
-        As for :func:`scale_to_one`.
-    vectors : ndarray, shape (N, 3 k)
-        Vectors, of a map in metres east and north.
-    scale : ndarray, shape (3,)
-        Scale of each axis, as a share of that of x.
+    Vectors (N, 3 k) of a map are in metres east and north; the scale is a share of that of x, and
+    meshes are as for :func:`scale_to_one`.
     """
     factors = scale / scale[0]
     if is_map(mesh):
@@ -167,12 +122,7 @@ def motion(mesh: pv.DataSet, traced: pv.DataSet, vectors: Array, scale: Array) -
 
 
 def is_map(mesh: pv.DataSet) -> bool:
-    """Return whether a mesh is a map in degrees, or was one.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return whether a mesh is a map in degrees, or was one."""
     return has_degrees(mesh) or LATITUDE in mesh.field_data or PROJECTION in mesh.field_data
 
 
@@ -181,13 +131,6 @@ def seem_degrees(grid: pv.DataSet, heights: str) -> bool:
 
     Its x and y can be longitude and latitude, and its heights range over more than its sides,
     as no terrain does whose x and y are in the unit of its heights.
-
-    Parameters
-    ----------
-    grid : pyvista.DataSet
-        Grid of one layer.
-    heights : str
-        Name of a point array.
     """
     bounds = grid.bounds
     # Longitudes run from -180 to 180 or from 0 to 360.
@@ -199,12 +142,7 @@ def seem_degrees(grid: pv.DataSet, heights: str) -> bool:
 
 
 def is_earth(mesh: pv.DataSet) -> bool:
-    """Return whether the x and y of a mesh of unknown unit are those of the whole earth in degrees.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return whether x and y of a mesh of unknown unit are those of the whole earth in degrees."""
     west, east, south, north, low, high = mesh.bounds
     is_around = 340 < east - west < 361 and min(abs(west), abs(west + 180)) < 10
     from_pole_to_pole = south >= -90 and north <= 90 and north - south > 150
@@ -212,12 +150,7 @@ def is_earth(mesh: pv.DataSet) -> bool:
 
 
 def on_earth(mesh: pv.DataSet) -> bool:
-    """Return whether no reference system of a mesh says that it is of another planet.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return whether no reference system of a mesh says that it is of another planet."""
     system = str(mesh.field_data["crs"][0]) if "crs" in mesh.field_data else ""
     radius = re.search(r'(?:SPHEROID|ELLIPSOID)\["[^"]*",\s*([\d.]+)', system)
     return radius is None or RADII[0] < float(radius[1]) < RADII[1]
@@ -262,17 +195,9 @@ def in_degrees(mesh: DataSetT, /) -> DataSetT:
 def exaggeration(mesh: pv.DataSet, heights: str, *, side: float | None = None) -> float:
     """Return the factor of heights with which the relief of a map can be seen.
 
-    It is 1 where they range over a twentieth of the side of the map to half of it; else the 1, 2
-    or 5 with zeros that comes next to that.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh whose points the heights raise; one in degrees is taken in metres.
-    heights : str
-        Name of a point array of one component.
-    side : float, optional
-        Length beside which the heights are seen. Default: the side of the map.
+    It is 1 where they range over a twentieth of the side of the map to half of it; else the 1, 2 or
+    5 with zeros that comes next to that. A mesh in degrees is taken in metres; ``side`` is the
+    length beside which heights are seen.
     """
     if side is not None:
         return _factor(range_of(mesh.point_data[heights]), side)
@@ -287,11 +212,6 @@ def stretch(mesh: pv.DataSet) -> float:
 
     Air and sea are thin beside their maps, and levels are often numbers; see :func:`exaggeration`.
     Of a vertical section it is that of y.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh.
     """
     if meaning.of(mesh).section:
         return sections.stretch(mesh)
@@ -319,12 +239,7 @@ def range_of(heights: Raw) -> float:
 
 
 def place_alike(lines: pv.DataSet, mesh: pv.DataSet) -> None:
-    """Say of lines that they lie on the map, and in the frame, of the mesh that they are made from.
-
-    Parameters
-    ----------
-    lines, mesh : pyvista.DataSet
-    """
+    """Say of lines that they lie on the map, and in the frame, of the mesh they are made from."""
     for key in (UNIT, PROJECTION, meaning.MEANING):
         if key in mesh.field_data:
             lines.field_data[key] = mesh.field_data[key]

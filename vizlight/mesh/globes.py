@@ -99,12 +99,7 @@ def _raised(ball: pv.PolyData, name: str, factor: float) -> Array:
 
 
 def is_globe(mesh: pv.DataSet) -> bool:
-    """Return whether a mesh is said to be the earth as a ball of radius 1: by us or by GeoVista.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return whether a mesh is said to be the earth as a ball of radius 1: by us or by GeoVista."""
     if not mesh.n_points or not ({GLOBE, "gvCRS"} & set(mesh.field_data)):
         return False
     sample = np.asarray(mesh.points, dtype=np.float64)[:: max(mesh.n_points // 1000, 1)]
@@ -114,15 +109,8 @@ def is_globe(mesh: pv.DataSet) -> bool:
 def directions(places: Array) -> Array:
     """Return the directions east, north and up at places.
 
-    Parameters
-    ----------
-    places : ndarray, shape (N, 2 or more)
-        Longitude and latitude in degrees.
-
-    Returns
-    -------
-    ndarray, shape (N, 3, 3)
-        Unit vectors: east, north and up are ``[:, 0]``, ``[:, 1]`` and ``[:, 2]``.
+    Places (N, 2 or more) are longitudes and latitudes in degrees; unit vectors (N, 3, 3) are east
+    in ``[:, 0]``, north in ``[:, 1]`` and up in ``[:, 2]``.
     """
     east, north = np.radians(places[:, 0]), np.radians(places[:, 1])
     zero = np.zeros_like(east)
@@ -136,13 +124,7 @@ def _turned(rows: Array, axes: Array) -> Array:
 
 
 def divided(lines: pv.PolyData) -> pv.PolyData:
-    """Return lines with sides that are at most a degree long.
-
-    Parameters
-    ----------
-    lines : pyvista.PolyData
-        Lines in degrees.
-    """
+    """Return lines with sides that are at most a degree long."""
     ids, ends = connectivity(lines.GetLines())
     flat = np.asarray(lines.points, dtype=np.float64)[ids]
     parts: list[Array] = []
@@ -158,10 +140,7 @@ def divided(lines: pv.PolyData) -> pv.PolyData:
 def closed(mesh: pv.DataSet) -> pv.DataSet:
     """Return a map with its first column as the last one, 360 degrees on, if it ends before that.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Map in degrees; one that is no grid of one layer is copied as it is.
+    The map is in degrees; one that is no grid of one layer is copied as it is.
     """
     columns, rows = (*dimensions(mesh), 0, 0)[:2]
     if columns < 3 or rows < 2 or mesh.n_points != columns * rows:
@@ -196,10 +175,7 @@ def _of_columns(
 def middle_of(mesh: pv.DataSet) -> float | None:
     """Return the middle longitude of a map of the whole earth, None for all else.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Map in degrees: a grid whose columns are meridians, or a surface that ends at one.
+    It is in degrees: a grid whose columns are meridians, or a surface that ends at one.
     """
     west, east, south, north = mesh.bounds[:4]
     if not south < -WHOLE or not north > WHOLE:
@@ -237,12 +213,8 @@ def _meridians(mesh: pv.DataSet) -> Array | None:
 def centred(mesh: pv.DataSet, middle: float) -> pv.DataSet:
     """Return a grid around the earth with its columns from half a turn west of a longitude on.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Map in degrees; one that is no grid around the earth is copied as it is.
-    middle : float
-        Longitude at which a column, half a turn away, is the first.
+    A map that is no grid around the earth is copied as it is; the first column lies half a turn
+    away from the middle.
     """
     lon = _meridians(mesh)
     if lon is None:

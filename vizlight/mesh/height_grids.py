@@ -35,17 +35,9 @@ LARGEST = 1 << 28
 class Heights:
     """A height field, and the indices of its nodes among the points of the grid.
 
-    Attributes
-    ----------
-    x, y : ndarray, shapes (nx,), (ny,)
-    z : ndarray, shape (ny, nx)
-    place : ndarray of int, shape (ny, nx)
-        Index of each node among the points of the grid.
-    stretch : ndarray, shape (ny,), optional
-        Length of a unit of x in each row of a map in degrees; None where it is 1.
-    turn : ndarray, shape (3, 3), optional
-        Rotation about the vertical from the axes of the mesh to the axes x and y; None where they
-        are the same.
+    ``place`` is the index of each node among the points of the grid, ``stretch`` the length of a
+    unit of x in each row of a map in degrees, None where it is 1, and ``turn`` the rotation about
+    the vertical from the axes of the mesh to the axes x and y, None where they are the same.
     """
 
     x: Array
@@ -76,13 +68,7 @@ class Heights:
 
 @dataclass(frozen=True)
 class Raster(Heights):
-    """A height field that was sampled from a surface.
-
-    Attributes
-    ----------
-    surface_points : ndarray, shape (N, 3)
-        Points of the surface.
-    """
+    """A height field that was sampled from a surface."""
 
     surface_points: Array = field(default_factory=lambda: np.empty((0, 3)))
 
@@ -113,12 +99,6 @@ def heights_of(
 
     Lengths of a map in degrees are in metres from its centre, and each of its rows has its own
     length of a unit of x, unless its rows are aslant to the parallels.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the grid has more than one layer, is tilted, has no such elevation, or its x and y do not
-        form straight rows and columns at right angles.
     """
     # In degrees x and y would be far shorter than the heights in metres: slopes would be walls.
     grid, factor = georeference.in_metres(grid), _check.number("exaggeration", factor)
@@ -267,10 +247,6 @@ def is_terrain(surface: pv.DataSet) -> bool:
 
     All its faces look up, or all down; it is far wider than high, 100 units at least, as maps in
     metres are, and has many slopes, while parts have walls and few normals.
-
-    Parameters
-    ----------
-    surface : pyvista.DataSet
     """
     wide, long, high = surface.bounds_size
     is_wide = min(wide, long) >= max(WIDE, high / MOST_HIGH) and high > 0
@@ -293,14 +269,8 @@ def is_terrain(surface: pv.DataSet) -> bool:
 def steep(mesh: pv.DataSet, heights: str, share: float) -> float:
     """Return the slope, as rise over run, that a share of a map does not exceed; 0 without faces.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Level mesh; one in degrees is taken in metres.
-    heights : str
-        Name of a point array of one component.
-    share : float
-        Share of a sample of its triangles, from 0 to 1.
+    The mesh is level; one in degrees is taken in metres. The share is one of a sample of its
+    triangles.
     """
     flat = georeference.in_metres(mesh)
     triangles = _some_triangles(flat, MOST_STEEP)
@@ -343,10 +313,7 @@ def _look_alike(areas: Array) -> bool:
 def raised(grid: Grid) -> Grid:
     """Return a grid of one level layer raised by its heights; any other as it is.
 
-    Parameters
-    ----------
-    grid : pyvista.ImageData, pyvista.RectilinearGrid or pyvista.StructuredGrid
-        Grid; one in degrees becomes one in metres.
+    A grid in degrees becomes one in metres.
     """
     name = elevation_name(grid)
     if name is None or grid.dimensions[2] != 1 or grid.bounds_size[2] > 0:

@@ -27,14 +27,9 @@ LISTED = 6
 class Joined(NamedTuple):
     """A grid of several datasets, with notes on their arrays.
 
-    Attributes
-    ----------
-    grid : pyvista.UnstructuredGrid
-    filled : dict of str to list of str
-        Names of the datasets that lack an array and have NaN in its place, by its name.
-    apart : dict of str to list of str
-        Names of the datasets whose array of a name has another number of components than most, or
-        words for numbers, and is left out.
+    ``filled`` has, by the name of an array, the datasets that lack it and have NaN in its place;
+    ``apart`` those with an array of another number of components than most, or of words for
+    numbers, which is left out.
     """
 
     grid: pv.UnstructuredGrid
@@ -86,19 +81,11 @@ def without_ghosts(mesh: pv.DataSet) -> pv.DataSet:
 def joined(parts: Iterable[tuple[pv.DataSet, str]]) -> Joined:
     """Return one grid of all cells of some datasets, with the union of their arrays.
 
-    Parameters
-    ----------
-    parts : iterable of (pyvista.DataSet, str)
-        Datasets, each with its name.
-
-    Returns
-    -------
-    Joined
-        The points and the cells are in the order of the datasets; points at one place stay apart.
-        Types of arrays are promoted to one that holds all values. An array is of the points where
-        it is in any dataset, and cells' values are then brought to the points; it is NaN where a
-        dataset has none (colours of bytes grey, words empty, marks of ghosts 0). Attributes that
-        all datasets agree upon are active.
+    The points and the cells are in the order of the datasets, each with its name; points at one
+    place stay apart. Types of arrays are promoted to one that holds all values. An array is of the
+    points where it is in any dataset, and cells' values are then brought to the points; it is NaN
+    where a dataset has none (colours of bytes grey, words empty, marks of ghosts 0). Attributes
+    that all datasets agree upon are active.
     """
     every = list(parts)
     grid = _cells([mesh for mesh, _ in every])
@@ -117,10 +104,7 @@ def joined(parts: Iterable[tuple[pv.DataSet, str]]) -> Joined:
 def highest(parts: Iterable[tuple[pv.DataSet, str]]) -> list[tuple[pv.DataSet, str]]:
     """Return the cells of the highest dimension of some datasets, without datasets of none.
 
-    Parameters
-    ----------
-    parts : iterable of (pyvista.DataSet, str)
-        Datasets, each with its name. Where none has cells all are returned.
+    Each has its name; where none has cells all are returned.
     """
     every = list(parts)
     sizes = [_dimensions(mesh) for mesh, _ in every]

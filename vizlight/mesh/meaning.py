@@ -40,16 +40,9 @@ KEPT = ("standard_name", "units", "long_name", "cell_methods")
 class AxisScale(NamedTuple):
     """Numbers along an axis, and the coordinates at which they stand.
 
-    Attributes
-    ----------
-    title : str
-        What they are; degrees of a "longitude" and of a "latitude" have words of their own.
-    unit : str
-        Their unit.
-    factor : float
-        Coordinate of 1, below 0 where the numbers fall.
-    is_log : bool
-        Whether the coordinates are in proportion to their logarithm, of base 10.
+    ``title`` says what they are; degrees of a "longitude" and of a "latitude" have words of their
+    own. ``factor`` is the coordinate of 1, below 0 where the numbers fall; with ``is_log``
+    coordinates are in proportion to their logarithm, of base 10.
     """
 
     title: str
@@ -68,10 +61,7 @@ class AxisScale(NamedTuple):
     def is_of_sea(self, top: float) -> bool:
         """Return whether these are heights in a sea, of which the highest is at its surface.
 
-        Parameters
-        ----------
-        top : float
-            Largest coordinate.
+        ``top`` is the largest coordinate.
         """
         # Levels of a model of the air count down from its top, and are no lengths.
         is_depth = self.unit == "m" or "depth" in self.title.lower() or self.title == "pressure"
@@ -82,23 +72,13 @@ class AxisScale(NamedTuple):
 class Meaning:
     """What a file says of its grid.
 
-    Attributes
-    ----------
-    axes : list of str
-        Words for x, y and z, such as "x longitude in degrees by standard_name".
-    arrays : dict
-        Standard name, unit, long name and flags of each array, as far as the file has them.
-    notes : list of str
-        What is missing, and what was assumed or left out.
-    time : str
-        Unit of the times of its steps, such as "hours since 1900-01-01", and their calendar if it
-        is not the usual one.
-    span : list of float
-        Begin and end of the time that the step stands for, none where the file does not say them.
-    level : str
-        Height, depth or pressure of a single layer, such as "500 hPa"; empty where none is known.
-    scales : list of AxisScale
-        Scales of x, y and z of a volume, or of x and y of a section; none of other grids.
+    ``axes`` are words for x, y and z, such as "x longitude in degrees by standard_name"; ``arrays``
+    has the standard name, unit, long name and flags of each array, as far as the file has them, and
+    ``notes`` what is missing, and was assumed or left out. ``time`` is the unit of the times of its
+    steps, such as "hours since 1900-01-01", with their calendar if it is not the usual one;
+    ``span`` the begin and end of the time that the step stands for; ``level`` the height, depth or
+    pressure of a single layer, such as "500 hPa". ``scales`` are of x, y and z of a volume, or of x
+    and y of a section.
     """
 
     axes: list[str] = field(default_factory=list)
@@ -170,13 +150,7 @@ def name_by_file(mesh: pv.DataSet, path: Path) -> None:
 def flags(mesh: pv.DataSet, name: str, key: str = "flags") -> dict[float, str]:
     """Return the names of the kinds of an array by their numbers, none where its file has none.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    name : str
-        Name of an array.
-    key : {"flags", "colors"}
-        Names, or colours such as "#ff0000".
+    ``key`` "colors" gives colours such as "#ff0000".
     """
     words = [word.partition(":") for word in of(mesh).arrays.get(name, {}).get(key, "").split()]
     return {float(number): text.replace("_", " ") for number, _, text in words}
@@ -185,23 +159,14 @@ def flags(mesh: pv.DataSet, name: str, key: str = "flags") -> dict[float, str]:
 def attach(mesh: MeshT, meaning: Meaning) -> MeshT:
     """Keep the meaning of a grid with its mesh, and return the mesh.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh, which gets the field array ``meaning``.
-    meaning : Meaning
+    It is the field array ``meaning``.
     """
     mesh.field_data[MEANING] = [json.dumps(asdict(meaning))]
     return mesh
 
 
 def of(mesh: pv.DataSet) -> Meaning:
-    """Return the meaning of a mesh; an empty one where no reader of grids has made it.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return the meaning of a mesh; an empty one where no reader of grids has made it."""
     if MEANING not in mesh.field_data:
         return Meaning()
     try:
@@ -213,33 +178,18 @@ def of(mesh: pv.DataSet) -> Meaning:
 
 
 def ways(mesh: pv.DataSet) -> tuple[str, ...]:
-    """Return words for the two ways along each axis: x, y and z where the mesh says no more.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return words for the two ways along each axis: x, y and z where the mesh says no more."""
     starts = [axis.partition(",")[0] for axis in of(mesh).axes]
     return tuple(ANATOMY.values()) if starts == list(ANATOMY) else ("x", "y", "z")
 
 
 def is_photograph(mesh: pv.DataSet) -> bool:
-    """Return whether a mesh is an image that has no place on the earth.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return whether a mesh is an image that has no place on the earth."""
     return of(mesh).axes == PAGE
 
 
 def line(mesh: pv.DataSet) -> str:
-    """Return the meaning of a mesh in one line; an empty text where there is none.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return the meaning of a mesh in one line; an empty text where there is none."""
     meaning = of(mesh)
     axes = meaning.axes
     if axes[1:] == ["y", "z"] and axes[0].startswith("x in "):
@@ -312,18 +262,8 @@ def components(mesh: pv.DataSet, /) -> list[tuple[str, ...]]:
 
     Standard names are taken first, such as ``eastward_wind`` and ``northward_wind``, then usual
     names, such as ``u`` and ``v``, ``u10`` and ``v10``, ``vx``, ``vy`` and ``vz``, ``x_wind`` and
-    ``y_wind``. Half a pair is no vector.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh.
-
-    Returns
-    -------
-    list of tuple of str
-        Names of two or three arrays of one component each, all of points or all of cells, in the
-        order x, y, z.
+    ``y_wind``. Half a pair is no vector. Arrays have one component each, all of points or all of
+    cells, in the order x, y, z.
     """
     result: list[tuple[str, ...]] = []
     table = of(mesh).arrays
@@ -425,11 +365,7 @@ def _speed(unit: str) -> float | None:
 def speed(mesh: pv.DataSet, named: str) -> float:
     """Return the unit of vectors in metres a second, 1 where nothing is said of it.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    named : str
-        Name of vectors, or names of their components separated by commas.
+    ``named`` is the name of vectors, or names of their components separated by commas.
     """
     unit = of(mesh).arrays.get(named.partition(",")[0], {}).get("units", "")
     return _speed(unit) or 1.0
@@ -438,16 +374,7 @@ def speed(mesh: pv.DataSet, named: str) -> float:
 def vectors(mesh: pv.DataSet, names: Sequence[str]) -> Raw:
     """Return vectors of the components that two or three point arrays are.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    names : sequence of str
-        Names of point arrays of one component.
-
-    Returns
-    -------
-    ndarray, shape (N, 3)
-        A third component that is missing is 0; where one is missing in the data all are NaN.
+    A third component that is missing is 0; where one is missing in the data all are NaN.
     """
     return stacked([np.asarray(mesh.point_data[name]) for name in names])
 
@@ -455,14 +382,7 @@ def vectors(mesh: pv.DataSet, names: Sequence[str]) -> Raw:
 def only_vectors(mesh: pv.DataSet) -> str | None:
     """Return the names of the only components of a mesh, None where it has other vectors or none.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-
-    Raises
-    ------
-    ValueError
-        If several vectors could be meant.
+    Several that could be meant raise ValueError.
     """
     data = (mesh.point_data, mesh.cell_data)
     if any(np.shape(part[key])[1:] == (3,) for part in data for key in part):
@@ -500,38 +420,17 @@ def with_components(mesh: DataSetT) -> DataSetT:
 
 
 def is_planar(rows: Raw) -> bool:
-    """Return whether rows are vectors of two components.
-
-    Parameters
-    ----------
-    rows : ndarray
-    """
+    """Return whether rows are vectors of two components."""
     return np.shape(rows)[1:] == (2,) and np.asarray(rows).dtype.kind == "f"
 
 
 def with_named(mesh: DataSetT, named: Named | None) -> tuple[DataSetT, Named | None]:
     """Return a mesh with the vectors that are named by their components, and their name.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh, which is not changed.
-    named : str or None
-        Name of vectors, or names of their components separated by commas. None takes the only
-        components of the mesh, if it has no array of three components. Vectors of two components
-        get 0 as the third.
-
-    Returns
-    -------
-    pyvista.DataSet
-        The mesh itself, or a copy that shares its arrays and has the vectors too.
-    str or None
-        Name of the vectors; what names no components is returned as it is.
-
-    Raises
-    ------
-    ValueError
-        If several vectors could be meant, or the components are no arrays of one component.
+    Names are those of vectors, or of their components separated by commas. None takes the only
+    components of the mesh, if it has no array of three components. Vectors of two components get 0
+    as the third. The mesh is not changed: a copy shares its arrays and has the vectors too; a name
+    of no components is returned as it is.
     """
     if named is None:
         named = only_vectors(mesh)
@@ -575,10 +474,7 @@ _ABOVE_SEA = re.compile(r" \(?(msl|a\.?m?\.?s\.?l\.?|above (mean )?sea[ -]level)
 def metres(unit: str) -> float | None:
     """Return the length of a unit in metres, None where it is no length.
 
-    Parameters
-    ----------
-    unit : str
-        Name of the unit, in singular or plural.
+    Units are in singular or plural.
     """
     name = _ABOVE_SEA.sub("", unit.strip().lower())
     return _METRES.get(name, _METRES.get(name.removesuffix("s")))
@@ -596,15 +492,7 @@ def usual_unit(mesh: pv.DataSet, name: str, size: float) -> tuple[float, str]:
     """Return the unit in which people read an array, and its size in that of the array.
 
     Pressures of air in Pa are read in hPa, where their numbers have five digits and more, and rates
-    of rain in millimetres a day.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    name : str
-        Name of an array.
-    size : float
-        Largest of its values, without sign.
+    of rain in millimetres a day. ``size`` is the largest of its values, without sign.
     """
     attributes = of(mesh).arrays.get(name, {})
     given = attributes.get("units", "")
@@ -637,51 +525,23 @@ _FACTOR = re.compile(r"([A-Za-z%]+)(?:\*\*|\^)?([-+]?[1-3])?")
 
 
 def is_in_decades(mesh: pv.DataSet, name: str) -> bool:
-    """Return whether an array is one of permeabilities, conductivities or resistivities.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    name : str
-        Name of an array.
-    """
+    """Return whether an array is one of permeabilities, conductivities or resistivities."""
     return _is_called(mesh, name, _IN_DECADES)
 
 
 def is_temperature(mesh: pv.DataSet, name: str) -> bool:
-    """Return whether an array is one of temperatures, by its name or the words of its file.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    name : str
-        Name of an array.
-    """
+    """Return whether an array is one of temperatures, by its name or the words of its file."""
     is_difference = any(_DIFFERENCE.search(word) for word in _words_of(mesh, name))
     return not is_difference and _is_called(mesh, name, _TEMPERATURE)
 
 
 def is_reflectivity(mesh: pv.DataSet, name: str) -> bool:
-    """Return whether an array is one of how much rain reflects, by its unit.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    name : str
-        Name of an array.
-    """
+    """Return whether an array is one of how much rain reflects, by its unit."""
     return of(mesh).arrays.get(name, {}).get("units", "").lower() == "dbz"
 
 
 def is_direction(mesh: pv.DataSet, name: str) -> bool:
-    """Return whether an array is one of directions in degrees, or in no unit that is said.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    name : str
-        Name of an array.
-    """
+    """Return whether an array is one of directions in degrees, or in no unit that is said."""
     unit = of(mesh).arrays.get(name, {}).get("units", "").lower()
     return (not unit or unit.startswith("deg")) and _is_called(mesh, name, _DIRECTION)
 
@@ -711,10 +571,7 @@ _CAPITALS = {"M/S", "CM/S", "KM/H", "METERS", "METRES", "MM/DAY", "PERCENT"}
 def written(unit: str) -> str:
     """Return a unit as it is printed: m/s for "m s**-1"; what is no product of factors as it is.
 
-    Parameters
-    ----------
-    unit : str
-        Unit as files have it, by UDUNITS.
+    Units in files are those of UDUNITS.
     """
     if unit.lower().replace("degrees", "degree") in _CELSIUS:
         return "°C"
@@ -735,12 +592,8 @@ def written(unit: str) -> str:
 def along_grid(attributes: Mapping[str, str]) -> bool | None:
     """Return whether a component is along the axes of its grid, not east or north.
 
-    None where the attributes of its array do not tell.
-
-    Parameters
-    ----------
-    attributes : mapping of str to str
-        Standard name and long name, as :class:`Meaning` has them.
+    None where the attributes of its array do not tell. They are the standard name and the long
+    name, as :class:`Meaning` has them.
     """
     standard = attributes.get("standard_name", "").lower()
     words = f"{standard} {attributes.get('long_name', '').lower()}"

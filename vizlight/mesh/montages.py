@@ -20,12 +20,7 @@ SHAPE, GAP = 1.5, 0.02
 
 
 def is_stack(mesh: pv.DataSet) -> bool:
-    """Return whether a volume is a stack of few slices, far apart for their pixels.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return whether a volume is a stack of few slices, far apart for their pixels."""
     if not isinstance(mesh, pv.ImageData | pv.StructuredGrid) or min(dimensions(mesh)) < 2:
         return False
     count, *others = sorted(dimensions(mesh))

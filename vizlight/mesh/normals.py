@@ -436,13 +436,6 @@ def with_normals(surface: object, view: View | None, angle: FeatureAngle = None)
 
     Points are split at edges sharper than the angle; without one a warning is given if normals
     were averaged across many sharp edges.
-
-    Raises
-    ------
-    TypeError
-        If it is not a PolyData mesh.
-    ValueError
-        If it has no faces.
     """
     own = split_where_computed(blocks.surface(surface, "surface"), angle)
     # Vertices and lines are left out, because every cell must be a triangle.
@@ -472,12 +465,8 @@ def welded(mesh: MeshT) -> MeshT:
     """Return a mesh whose points at the same place are one, where all their arrays are equal.
 
     Points without a cell are left out. Normals that are computed are then those of the surface, not
-    of each face; points that differ in a colour or a texture coordinate stay apart.
-
-    Parameters
-    ----------
-    mesh : pyvista.PolyData or pyvista.UnstructuredGrid
-        Surface of polygons alone, or cells; anything else is returned as it is.
+    of each face; points that differ in a colour or a texture coordinate stay apart. Anything but a
+    surface of polygons alone, or cells, is returned as it is.
     """
     is_grid = isinstance(mesh, pv.UnstructuredGrid)
     if not mesh.n_cells or not (is_grid or mesh.n_cells == mesh.GetNumberOfPolys()):
@@ -523,11 +512,7 @@ def keep_normals(mesh: pv.PolyData) -> None:
     """Keep the normals of a surface without creases at points that only their arrays tell apart.
 
     Along the seam of a texture, or where colours differ, light is then as smooth as the surface.
-
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Surface of polygons; where it has no sharp edge, its point normals are set.
+    Where the surface has no sharp edge, its point normals are set.
     """
     if mesh.n_cells != mesh.GetNumberOfPolys() or mesh.n_points < FEWEST:
         return

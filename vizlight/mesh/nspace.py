@@ -262,24 +262,9 @@ class Turning:
 def spanned(mesh: pv.DataSet, position: Array) -> Array:
     """Return at each point a frame of the space that the cells around it span in n-space.
 
-    It is the space nearest to those of the cells, each by its size.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh of lines, faces or volumes; the cells of highest dimension count.
-    position : ndarray, shape (n_points, n)
-        Places of the points.
-
-    Returns
-    -------
-    ndarray, shape (n_points, k n)
-        k orthonormal rows for cells of dimension k, zero at points of no cell with a size.
-
-    Raises
-    ------
-    ValueError
-        If the mesh has points alone.
+    It is the space nearest to those of the cells, each by its size. The cells of highest dimension
+    k count. The k orthonormal rows, (n_points, k n) for places (n_points, n), are zero at points of
+    no cell with a size.
     """
     corners, middles = _simplices(mesh)
     count, n = position.shape
@@ -306,19 +291,9 @@ def continued(mesh: pv.DataSet, name: str) -> Array | None:
     At a fold of the projection the image of a tangent vanishes, but the spaces that the tangents
     span at the points around usually have a limit. It is found as their mean, of second order in
     the distance of points that lie on both sides of the fold. Where the spaces around differ by
-    much, as at a pinch point, no limit exists and the rows stay as they are.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Projected mesh.
-    name : str
-        Name of the point array of 3 k components, orthonormal rows, zero past their rank.
-
-    Returns
-    -------
-    ndarray, shape (n_points, 3 k), or None
-        None if no rank is lost.
+    much, as at a pinch point, no limit exists and the rows stay as they are. The array of the
+    projected mesh has 3 k components, orthonormal rows, zero past their rank; None is returned if
+    no rank is lost.
     """
     rows = np.asarray(mesh.point_data[name])
     frame = rows.reshape(len(rows), -1, 3).astype(np.float64)
@@ -429,27 +404,11 @@ def cut(
 ) -> pv.PolyData:
     """Return the part of a mesh where a function of its points is 0, with its point arrays.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh of lines, faces or volumes; the cells of highest dimension are cut.
-    heights : ndarray, shape (N,)
-        Values of the function at the points.
-    spaces : mapping of str to int, optional
-        Names of point arrays of rows that span a space, and the number n of components of a row:
-        the mean is one of spaces, independent of the basis at each point.
-
-    Returns
-    -------
-    pyvista.PolyData
-        Points, lines or triangles. Numeric point arrays are interpolated along the cut edges,
-        cell arrays are left out. A hexahedron is cut as 12 tetrahedra around its mean point.
-        Triangles are not consistently oriented.
-
-    Raises
-    ------
-    ValueError
-        If the mesh has neither lines nor faces nor volumes.
+    The cells of highest dimension are cut, to points, lines or triangles, which are not
+    consistently oriented; a hexahedron is cut as 12 tetrahedra around its mean point. Numeric point
+    arrays are interpolated along the cut edges, cell arrays are left out. ``spaces`` are names of
+    point arrays of rows that span a space, and the number n of components of a row: the mean is one
+    of spaces, independent of the basis at each point.
     """
     simplices, middles = _simplices(mesh)
     # The mean point of a hexahedron, a new point behind those of the mesh, has the mean height.
@@ -581,10 +540,7 @@ def is_dropped(mesh: pv.DataSet) -> bool:
 def covers_itself(mesh: pv.DataSet) -> bool:
     """Return whether the first three coordinates put much of a mesh onto other parts of it.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh with places in n-space as ``position``.
+    Its places in n-space are ``position``.
     """
     places: Array = np.asarray(mesh.point_data[POSITION], dtype=np.float64)
     if len(places) <= NEIGHBOURS:

@@ -23,12 +23,7 @@ MOST_STEPS = 10_000
 class Rows(Columns):
     """Particles at R times of release or of passage, for each of N seeds; NaN for none.
 
-    Attributes
-    ----------
-    places : ndarray, shape (R, N, 3)
-    vectors : ndarray, shape (R, N, 3)
-        Vectors that carry them.
-    times : ndarray, shape (R,)
+    Places and the vectors that carry them have the shape (R, N, 3).
     """
 
     places: Array
@@ -68,12 +63,8 @@ class Rows(Columns):
 class Carrier:
     """Vectors between two times, linear in time, by VTK's interpolation in the cells.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh; its arrays are not used.
-    tangents : str
-        Name of the vectors or of their components, for their unit.
+    The arrays of the mesh are not used; ``tangents`` is the name of the vectors or of their
+    components, for their unit.
     """
 
     def __init__(self, mesh: pv.DataSet, tangents: str = "") -> None:
@@ -179,21 +170,10 @@ class Drift:
     A stroke is the way of a particle in the time before: longer where the field is faster. It
     grows, moves, stops and shrinks; then its particle begins anew where strokes are farthest.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Flat sheet or volume, as for :class:`vizlight.mesh.particles.Carrier`.
-    vectors : ndarray, shape (n_points, 3)
-        Vectors before the first time.
-    spacing, length : float
-        Distance between neighbours and length of fast strokes, in the unit of the mesh.
-    tangents : str
-        Name of the vectors or of their components, for their unit.
-
-    Attributes
-    ----------
-    duration : float
-        Time that a stroke shows, in the unit of the times.
+    ``spacing`` and ``length`` are the distance between neighbours and the length of fast strokes,
+    in the unit of the mesh; ``duration`` is the time that a stroke shows, in the unit of the times.
+    The mesh and ``tangents`` are as for :class:`vizlight.mesh.particles.Carrier`, and ``vectors``
+    those before the first time.
     """
 
     def __init__(

@@ -90,14 +90,8 @@ def before_turning_back(mesh: pv.PolyData) -> pv.PolyData:
 def by_end(mesh: pv.PolyData, name: str) -> pv.PolyData:
     """Return the segments of lines, those between two labels cut in half.
 
-    Colours that run from one label to another would show those between them.
-
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Lines, which are not changed; the mesh itself is returned where no segment has two labels.
-    name : str
-        Point array of labels.
+    Colours that run from one label to another would show those between them. The lines are not
+    changed; the mesh itself is returned where no segment has two labels.
     """
     ids, offsets = connectivity(mesh.GetLines())
     first = np.setdiff1d(np.arange(len(ids)), offsets[1:] - 1)
@@ -120,12 +114,7 @@ def by_end(mesh: pv.PolyData, name: str) -> pv.PolyData:
 def polydata(points: Array, ends: Indices, /) -> pv.PolyData:
     """Return a mesh of polylines.
 
-    Parameters
-    ----------
-    points : ndarray, shape (N, 3)
-        Points of the lines, one line after the other.
-    ends : ndarray of int, shape (L + 1,)
-        Start of each line, followed by N.
+    ``ends`` (L + 1,) is the start of each line, followed by the number of points.
     """
     out = pv.PolyData()
     if len(points):

@@ -54,13 +54,8 @@ EQUAL_EARTH, NEWTON = np.array([1.340264, -0.081106, 0.000893, 0.003796]), 12
 class Projection:
     """Pair of functions between the earth and a plane.
 
-    Attributes
-    ----------
-    forward : callable
-        Function of longitudes and latitudes in degrees, shape (N, 2), that returns x and y in
-        metres; not finite where a place is not on the map.
-    inverse : callable
-        Function of x and y that returns longitudes and latitudes.
+    ``forward`` takes longitudes and latitudes in degrees, (N, 2), to x and y in metres, which are
+    not finite where a place is not on the map; ``inverse`` takes them back.
     """
 
     forward: Callable[[Array], Array]
@@ -76,10 +71,7 @@ def keywords(text: str) -> dict[str, str]:
 def of_text(text: str) -> Projection | None:
     """Return a projection by its text, None where it is none that can be computed here.
 
-    Parameters
-    ----------
-    text : str
-        Keywords of PROJ, or a reference system that rasterio reads, such as its WKT.
+    It is keywords of PROJ, or a reference system that rasterio reads, such as its WKT.
     """
     words = keywords(text)
     kind = words.get("proj", "")
@@ -274,10 +266,7 @@ def _half(lat: Foreign) -> Foreign:
 def of_attributes(attributes: Mapping[str, Foreign]) -> str:
     """Return the text of a projection by the attributes of CF or of WRF, empty for none.
 
-    Parameters
-    ----------
-    attributes : mapping
-        Attributes of a variable with ``grid_mapping_name``, or of a file with ``MAP_PROJ``.
+    They are those of a variable with ``grid_mapping_name``, or of a file with ``MAP_PROJ``.
     """
     if "MAP_PROJ" in attributes:
         return _of_wrf(attributes)
@@ -336,10 +325,7 @@ def _text_of_pole(lat: float, lon: float) -> str:
 def around(lon: float) -> str:
     """Return the text of the projection that suits a map around the earth.
 
-    Parameters
-    ----------
-    lon : float
-        Longitude of its middle in degrees.
+    ``lon`` is the longitude of its middle in degrees.
     """
     return f"+proj=eqearth +lon_0={lon:.9g} +R={RADIUS}"
 
@@ -349,16 +335,8 @@ def suited(bounds: Sequence[float], *, straight: bool = False, north_up: bool = 
 
     A small map is equirectangular about its middle. A larger one of the middle latitudes is
     Lambert's conformal cone, or Mercator's where north is to be up and scales differ little, and
-    one around a pole is stereographic.
-
-    Parameters
-    ----------
-    bounds : sequence of float
-        West, east, south and north in degrees.
-    straight : bool, default: False
-        Whether rows and columns must stay straight.
-    north_up : bool, default: False
-        Whether a course is to be the same angle everywhere on the map.
+    one around a pole is stereographic. Bounds are west, east, south and north in degrees; options
+    are as for :func:`vizlight.mesh.charts.suited`.
     """
     west, east, south, north = bounds[:4]
     lon, lat = (west + east) / 2, (south + north) / 2

@@ -281,17 +281,8 @@ def refuse_unnamed(name: str, value: object) -> None:
 def averaged(mesh: DataSetT, *names: object) -> DataSetT:
     """Return a mesh with cell arrays averaged to its points, where no point array has the name.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh, which is not changed.
-    *names : object
-        Names of arrays; anything but a name is ignored.
-
-    Returns
-    -------
-    pyvista.DataSet
-        The mesh itself, or a copy that shares its arrays and has the means too.
+    Anything but a name is ignored. The mesh is not changed: a copy shares its arrays and has the
+    means too.
     """
     wanted = [name for name in names if isinstance(name, str) and is_of_cells(mesh, name)]
     if not wanted:

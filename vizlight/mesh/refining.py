@@ -49,14 +49,9 @@ NEAREST = 0.2
 class Left(NamedTuple):
     """Errors that refinement leaves.
 
-    Attributes
-    ----------
-    error : float
-        Largest error at 4,096 random places between the points, uniform in area or length.
-    share : float
-        Share of those places with more than the error allowed.
-    enough : bool
-        Whether the point budget was sufficient.
+    ``error`` is the largest at 4,096 random places between the points, uniform in area or length,
+    and ``share`` that of those places with more than the error allowed; ``enough`` is whether the
+    point budget was sufficient.
     """
 
     error: float
@@ -77,25 +72,8 @@ def refined(
 ) -> Refined:
     """Return a mesh with its segments or triangles split where light bends.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh of faces or lines; not changed.
-    path : str
-        Path of the mesh in a MultiBlock, for an error.
-    part : Part
-        Inputs and options of its light.
-    scene : Scene
-        Scene; its depth cue, if any, has both ends.
-    error : float
-        Largest error allowed.
-    most : int, optional
-        Largest number of points.
-
-    Raises
-    ------
-    ValueError
-        If the mesh has cells that fill space, or neither faces nor lines.
+    The mesh, of faces or lines, is not changed; ``path`` is its own in a MultiBlock, for an error,
+    a depth cue of the scene has both ends, and ``most`` is the largest number of points.
     """
     with _check.in_block(path):
         flat = subdivision.as_polydata(mesh)
@@ -218,24 +196,8 @@ def refine(
 ) -> tuple[SplitCells, Left]:
     """Split cells until interpolated light is within an error of the light between the points.
 
-    Parameters
-    ----------
-    between : Between
-        Points and vectors that are lit at the points and between them.
-    shading : Shading
-        Light of the points.
-    parents : ndarray of int, shape (P, s)
-        Segments, s = 2, or triangles, s = 3.
-    error : float
-        Error allowed, above 0.
-    most : int
-        Largest number of points.
-
-    Returns
-    -------
-    SplitCells
-        Parts of the cells.
-    Left
+    ``parents`` (P, s) are segments, s = 2, or triangles, s = 3; ``most`` is the largest number of
+    points.
     """
     work = _Refinement(between, shading, parents, error, most)
     fresh = np.arange(len(parents))

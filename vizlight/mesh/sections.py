@@ -19,13 +19,7 @@ ENOUGH = 0.02
 
 
 def stretch(mesh: pv.DataSet) -> float:
-    """Return the factor of the heights of a section with which it can be seen.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Section, by its meaning.
-    """
+    """Return the factor of the heights of a section with which it can be seen."""
     flat, up = meaning.of(mesh).section
     x, y, _ = stretched(mesh, 1.0).bounds_size
     if not min(x, y) > 0 or (flat.unit == up.unit in ("m", "") and 1 <= x / y <= LONGEST):
@@ -37,12 +31,7 @@ def stretch(mesh: pv.DataSet) -> float:
 def stretched(mesh: DataSetT, factor: float) -> DataSetT:
     """Return a section with its heights times a factor; pressures far apart by their logarithm.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Section, which is not changed.
-    factor : float
-        Factor of its y.
+    The section is not changed.
     """
     said = meaning.of(mesh)
     flat, up = said.section

@@ -39,22 +39,10 @@ SLOW = 5000
 class Sky(NamedTuple):
     """The sky of a mesh.
 
-    Attributes
-    ----------
-    share : ndarray of float32, shape (N,)
-        Share of the sky that each point sees; one without a sky has the nearest point's.
-    valid : ndarray of bool, shape (N,)
-        Whether a point has a sky.
-    openness : ndarray of float32, shape (N,), or None
-        Openness in radians.
-    record : dict
-        Method, error and effort.
-    dark : int
-        Number of points of a surface that see nothing.
-    between : float
-        Error of values interpolated between the points of a surface, of 95 of 100 places.
-    requested : float
-        Error that was requested.
+    ``share`` is that of the sky that each point sees; one without a sky has the nearest point's.
+    ``openness`` is in radians. ``record`` has method, error and effort, and ``dark`` is the number
+    of points of a surface that see nothing. 95 of 100 places keep to ``between``, the error of
+    values interpolated between the points of a surface.
     """
 
     share: Array
@@ -94,26 +82,10 @@ def skies(
 ) -> list[Sky]:
     """Return the sky of meshes: fields see themselves alone, all others hide one another's sky.
 
-    Parameters
-    ----------
-    meshes : sequence of pyvista.DataSet
-    error : float
-        Error that 95 of 100 points of each mesh shall keep to.
-    up : tuple of float, optional
-        Direction of the half space that is the sky of meshes that are no fields.
-    diameter : float, optional
-        Diameter of lines.
-    openness : bool
-        Whether fields have their openness, too.
-    report : callable
-        Function of the number of points, or of azimuths of a field, that are done.
-    elevation, factor
-        As for :func:`vizlight.relief_shadow`; only for fields.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a mesh has neither faces nor lines, or an argument does not fit it.
+    95 of 100 points of each mesh shall keep to the error; ``up`` is the direction of the half space
+    that is the sky of meshes that are no fields, and ``diameter`` that of lines. Only fields have
+    an ``openness``, and ``elevation`` and ``factor`` as for :func:`vizlight.relief_shadow`.
+    ``report`` takes the number of points, or of azimuths of a field, that are done.
     """
     skies_by_number: dict[int, Sky] = {}
     shapes: dict[int, pv.DataSet] = {}
@@ -310,13 +282,7 @@ def in_medium(
 ) -> Array:
     """Return the share of light from all sides at points of a surface, or of lines, among lines.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh of lines, or a surface with ``normals``.
-    lines : Medium, float
-        Lines, and their diameter.
-    normals : ndarray, shape (N, 3), optional
+    ``lines`` are given with their diameter; a surface has ``normals``.
     """
     medium, thick = lines
     points = np.asarray(mesh.points)

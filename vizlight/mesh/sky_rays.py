@@ -50,15 +50,9 @@ OUTSIDE = 1.06
 class SkyPlaces(NamedTuple):
     """Points that look at the sky.
 
-    Attributes
-    ----------
-    points : ndarray, shape (N, 3)
-    ways : ndarray, shape (N, 3)
-        Normals of a surface or tangents of lines; a row that is 0 or not finite has no sky.
-    radius : float or None
-        Radius of the tubes; None for a surface.
-    beside : tuple of two ndarray, or None
-        Points and ways from which a point that sees nothing looks again; see :func:`beside`.
+    ``ways`` are normals of a surface or tangents of lines; a row that is 0 or not finite has no
+    sky. ``radius`` is that of the tubes, None for a surface; a point that sees nothing looks again
+    from ``beside``, see :func:`beside`.
     """
 
     points: Array
@@ -70,15 +64,8 @@ class SkyPlaces(NamedTuple):
 class Seen(NamedTuple):
     """Shares of the sky that points see.
 
-    Attributes
-    ----------
-    share : ndarray of float32, shape (N,)
-    valid : ndarray of bool, shape (N,)
-        Whether a point has a sky: it has a normal, and is not buried inside of the surface.
-    error : float
-        Error that 95 of 100 points keep to, as estimated.
-    rays : int
-        Number of rays of all points.
+    A point is ``valid`` if it has a normal and is not buried inside of the surface; 95 of 100
+    points keep to ``error``, as estimated. ``rays`` is the number of rays of all points.
     """
 
     share: Array
@@ -116,19 +103,8 @@ class Occluders:
     ) -> Seen:
         """Return the share of the sky that points see.
 
-        Parameters
-        ----------
-        places : SkyPlaces
-        error : float
-            Error that 95 of 100 points shall keep to.
-        up : ndarray, shape (3,), optional
-            Direction of the half space that is the sky.
-        report : callable, optional
-            Function of the number of points that are done.
-
-        Returns
-        -------
-        Seen
+        95 of 100 points shall keep to the error; ``up`` is the direction of the half space that is
+        the sky, and ``report`` takes the number of points that are done.
         """
         ways = np.asarray(places.ways, np.float64)
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
@@ -284,19 +260,8 @@ def beside(points: Array, triangles: Indices) -> tuple[Array, Array]:
 
     Where faces meet inward a point is on the wrong side of one of them by rounding, or its mean
     normal takes the start of its rays there: it sees nothing, but the places beside it do.
-
-    Parameters
-    ----------
-    points : ndarray, shape (N, 3)
-        Points of a surface.
-    triangles : ndarray of int, shape (M, 3)
-        Wound so that their outer side looks at the sky.
-
-    Returns
-    -------
-    ndarray, shape (N, 3)
-    ndarray, shape (N, 3)
-        0 where a point has no triangle.
+    Triangles are wound so that their outer side looks at the sky; the normal is 0 where a point has
+    no triangle.
     """
     normals = across(points, triangles)
     area = np.nan_to_num(np.einsum("ij,ij->i", normals, normals), posinf=0.0)
@@ -330,15 +295,8 @@ def across(points: Array, triangles: Indices) -> Array:
 def tubes(points: Array, ids: Indices, offsets: Indices, radius: float) -> tuple[Array, Indices]:
     """Return vertices and triangles of prisms about polylines, of the mean width of round tubes.
 
-    Parameters
-    ----------
-    points : ndarray, shape (N, 3)
-    ids : ndarray of int, shape (M,)
-        Indices of the points of each line, one line after the other.
-    offsets : ndarray of int, shape (L + 1,)
-        Start of each line in ``ids``, followed by its length.
-    radius : float
-        Radius of the tubes.
+    ``ids`` are the points of each line, one line after the other, and ``offsets`` (L + 1,) the
+    start of each in it, followed by its length.
     """
     place = points[ids].astype(np.float64)
     tangents = polyline_tangents(place, offsets=offsets)

@@ -26,12 +26,7 @@ _COLUMNS = {4: ((0, 1, 2), (3,)), 6: ((0, 1, 2), (3, 4, 5)), 9: ((0, 4, 8), (1, 
 
 
 def tensors_of(mesh: pv.DataSet) -> str | None:
-    """Return the name of the first array of tensors of stress, None without one.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return the name of the first array of tensors of stress, None without one."""
     for data in (mesh.point_data, mesh.cell_data):
         for name in data:
             columns = data[name].shape[1:]
@@ -41,12 +36,7 @@ def tensors_of(mesh: pv.DataSet) -> str | None:
 
 
 def displacement(mesh: pv.DataSet) -> tuple[str, float] | None:
-    """Return the point array of displacements and the longest one, None where none has a length.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return the point array of displacements and the longest one, None where none has a length."""
     for name in mesh.point_data:
         rows = np.asarray(mesh.point_data[name])
         if rows.shape[1:] in {(2,), (3,)} and _DISPLACEMENT.fullmatch(name.lower()):
@@ -57,22 +47,12 @@ def displacement(mesh: pv.DataSet) -> tuple[str, float] | None:
 
 
 def are_in(mesh: pv.DataSet) -> bool:
-    """Return whether a mesh has stresses: their tensors, or that of von Mises.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    """
+    """Return whether a mesh has stresses: their tensors, or that of von Mises."""
     return any(map(is_von_mises, mesh.array_names)) or tensors_of(mesh) is not None
 
 
 def is_von_mises(name: str) -> bool:
-    """Return whether an array has the name of von Mises.
-
-    Parameters
-    ----------
-    name : str
-    """
+    """Return whether an array has the name of von Mises."""
     return "mises" in name.lower()
 
 

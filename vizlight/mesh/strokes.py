@@ -40,14 +40,8 @@ SLOWEST = 1e-3
 class Arrow(NamedTuple):
     """Shape of a stroke with a sense.
 
-    Attributes
-    ----------
-    tail, neck : float
-        Width at the tail and before the head, as shares of the largest.
-    head : float
-        Length of the head as a share of that of the stroke.
-    tip : float
-        Width of the tip as a share of the largest.
+    Widths at the ``tail``, before the head (``neck``) and at the ``tip`` are shares of the largest
+    one, ``head`` is a share of the length of the stroke.
     """
 
     tail: float
@@ -64,16 +58,8 @@ FLAT, TUBE = Arrow(0.1, 0.3, 0.15), Arrow(0.1, 0.4, 0.25, 0.1)
 class LineSegments(NamedTuple):
     """Segments of the lines of a mesh, line after line.
 
-    Attributes
-    ----------
-    starts, ends : ndarray of int, shape (n,)
-        Points at both ends.
-    lines : ndarray of int, shape (n,)
-        Numbers of their lines.
-    before : ndarray of float, shape (n,)
-        Length of the line before the segment.
-    lengths : ndarray of float, shape (n,)
-        Lengths.
+    ``starts`` and ``ends`` are the points at both ends, and ``before`` is the length of the line
+    before the segment.
     """
 
     starts: Indices
@@ -114,17 +100,7 @@ def against(mesh: pv.PolyData, segments: LineSegments, tangents: AnyArray) -> Bo
 def ages(mesh: pv.PolyData, tangents: AnyArray) -> Array:
     """Return the length of the line from its start to each point, along the tangents.
 
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Lines.
-    tangents : array_like, shape (n_points, 3)
-        Directions in which the lines are run through.
-
-    Returns
-    -------
-    ndarray of float64, shape (n_points,)
-        Lengths in the unit of the mesh; the first point of a closed line has the length 0.
+    Lengths are in the unit of the mesh; the first point of a closed line has the length 0.
     """
     segments = segments_of(mesh)
     return _run_through(mesh, segments, against(mesh, segments, tangents))
@@ -176,13 +152,6 @@ def without_short(mesh: pv.PolyData, least: float) -> pv.PolyData:
     At a kink a line turns by more than a right angle within a seventh of the least length: it turns
     on the spot, as at a point of stagnation, or follows noise, and is two lines. The field array
     ``left_out`` is the number of lines no part of which is left.
-
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Lines.
-    least : float
-        Least length of a part.
     """
     segments = segments_of(mesh)
     kinked = _turns(mesh, segments, KINK * least) > math.pi / 2
@@ -196,15 +165,8 @@ def without_short(mesh: pv.PolyData, least: float) -> pv.PolyData:
 def inside(mesh: pv.PolyData, border: Array, spacing: float) -> pv.PolyData:
     """Return the lines of a mesh without their parts along a border, if others are left.
 
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Lines.
-    border : ndarray, shape (N, 2, 3)
-        Ends of the sides of a surface at its border.
-    spacing : float
-        Distance between lines: a part runs along the border if it is longer, and nearer to it than
-        0.3 of that.
+    ``border`` (N, 2, 3) has the ends of the sides of a surface at its border; a part runs along it
+    if it is longer than the spacing between lines, and nearer to it than 0.3 of that.
     """
     segments, least = segments_of(mesh), RIM * spacing
     if not len(border) or not len(segments.lines):
@@ -248,24 +210,10 @@ def _turns(mesh: pv.PolyData, segments: LineSegments, within: float) -> Array:
 def cut(mesh: pv.PolyData, length: float, tangents: str, arrow: Arrow | None) -> pv.PolyData:
     """Return lines cut at their points into strokes of one length, with their widths.
 
-    Strokes with a sense get points of their own at the base of their heads.
-
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Lines.
-    length : float
-        Length of a stroke; those of a line are equally long, as far as its points allow.
-    tangents : str
-        Name of the point array of the directions of the strokes.
-    arrow : Arrow, optional
-        Shape of strokes with a sense, which end in a head. None: both ends are thin.
-
-    Returns
-    -------
-    pyvista.PolyData
-        Strokes with the arrays of the mesh, and the point array ``width``: as the arrow says,
-        with 1 at the base of a head; without heads from 0.3 at the ends to 1.
+    Strokes with a sense get points of their own at the base of their heads. Those of a line are
+    equally long, as far as its points allow. The point array ``width`` is as the arrow says, with 1
+    at the base of a head; without an arrow it goes from 0.3 at both ends to 1. ``tangents`` names
+    the directions of the strokes.
     """
     segments = segments_of(mesh)
     totals = segments.totals()
@@ -292,16 +240,8 @@ def cut(mesh: pv.PolyData, length: float, tangents: str, arrow: Arrow | None) ->
 def set_widths(lines: pv.PolyData, times: str, duration: float, arrow: Arrow) -> None:
     """Give lines the widths of one stroke each, thin as long as it is short.
 
-    Parameters
-    ----------
-    lines : pyvista.PolyData
-        Lines, which get the point array ``width``.
-    times : str
-        Name of the point array of the times at which a particle passes, rising along a line.
-    duration : float
-        Time that a stroke which is grown shows.
-    arrow : Arrow
-        Shape of a stroke.
+    They are the point array ``width``; ``times`` names the times at which a particle passes, rising
+    along a line, and ``duration`` is the time that a stroke which is grown shows.
     """
     _, ids, offsets = polylines.cells_of(lines)
     when = np.asarray(lines.point_data[times], dtype=np.float64)[ids]
@@ -367,12 +307,7 @@ def _divided(lines: pv.PolyData, places: Array) -> pv.PolyData:
 def fine(mesh: pv.PolyData, length: float) -> pv.PolyData:
     """Return lines with points that are near enough to show heads of strokes that move.
 
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Lines.
-    length : float
-        Distance from one stroke to the next.
+    ``length`` is the distance from one stroke to the next.
     """
     segments = segments_of(mesh)
     lines = _rebuilt(mesh, segments, np.ones(len(segments.lines), dtype=np.bool_), segments.lines)
@@ -387,20 +322,11 @@ def set_moving(mesh: pv.PolyData, length: float, velocities: AnyArray, travel: f
     """Give lines the point arrays of strokes that move along them with the vectors.
 
     Each line has a whole number of strokes that pass in a period, so that a movie can be repeated.
-    Strokes are as long as the way moved in that time: longer where the vectors are.
-
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Lines, which get ``phase``, ``passing``, ``grown``, and ``width`` at the start, and the
-        field array ``period``, in the unit of lengths over that of the velocities.
-    length : float
-        Distance from one stroke to the next on a line of any speed, as far as the whole number of
-        strokes allows.
-    velocities : array_like, shape (n_points, 3)
-        Velocities in the coordinates of the mesh, along the lines.
-    travel : float
-        Number of these distances that the 90th percentile of the speeds moves in a period.
+    Strokes are as long as the way moved in that time: longer where the vectors are. The arrays are
+    ``phase``, ``passing``, ``grown``, and ``width`` at the start; the field array ``period`` is in
+    the unit of lengths over that of the velocities. ``length`` is the distance from one stroke to
+    the next on a line of any speed, as far as the whole number of strokes allows, and ``travel``
+    the number of these distances that the 90th percentile of the speeds moves in a period.
     """
     segments = segments_of(mesh)
     speed = kernels.length_rows(velocities)
@@ -433,17 +359,8 @@ def set_moving(mesh: pv.PolyData, length: float, velocities: AnyArray, travel: f
 def moved_widths(mesh: pv.PolyData, share: float) -> Array:
     """Return the widths of strokes that have moved for a share of their period.
 
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Lines with the arrays of :func:`set_moving`.
-    share : float
-        Time in periods.
-
-    Returns
-    -------
-    ndarray of float32, shape (n_points,)
-        0 between strokes, 0.3 behind the head of one, which is 1 at its base, less where it grows.
+    The lines have the arrays of :func:`set_moving`. Widths are 0 between strokes, 0.3 behind the
+    head of one, which is 1 at its base, less where it grows.
     """
     phase, passing, grown = (
         np.asarray(mesh.point_data[name], dtype=np.float64) for name in (PHASE, PASSING, GROWN)

@@ -30,15 +30,8 @@ TANGENTS = "vizlight_tangents"
 def simplices(mesh: pv.DataSet) -> Indices:
     """Return the triangles of the surface of a mesh, or its segments if it has only lines.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh of any cells. Polygons are taken as triangles; of volumes the outer surface is taken.
-
-    Returns
-    -------
-    ndarray of int, shape (M, 3) or (M, 2)
-        Points of the mesh; no rows if it has neither faces nor lines.
+    They are points of the mesh, in rows of 3 or 2, without rows if it has neither. Polygons are
+    taken as triangles; of volumes the outer surface is taken.
     """
     if not mesh.n_points or not mesh.n_cells:
         return np.empty((0, 3), np.intp)
@@ -53,13 +46,7 @@ def simplices(mesh: pv.DataSet) -> Indices:
 
 
 def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
-    """Return a mesh of faces or lines as PolyData with the same points in the same order.
-
-    Raises
-    ------
-    ValueError
-        If the mesh has cells that fill space, or neither faces nor lines.
-    """
+    """Return a mesh of faces or lines as PolyData with the same points in the same order."""
     if mesh.GetMaxSpatialDimension() == 3:
         remedy = "take the mesh's extract_surface() or a contour"
         raise _check.value_error(
@@ -95,23 +82,11 @@ def as_polydata(mesh: pv.DataSet) -> pv.PolyData:
 class SplitCells:
     """Segments or triangles that are split step by step.
 
-    Parameters
-    ----------
-    points : ndarray, shape (N, n)
-        Points of the mesh.
-    parents : ndarray of int, shape (P, s)
-        Segments, s = 2, or triangles, s = 3.
-
-    Attributes
-    ----------
-    corners : ndarray of int, shape (T, s)
-        Points of the parts: first the mesh's own, then new ones in the order of their making.
-    parent : ndarray of int, shape (T,)
-        Cell of the mesh that each part lies in.
-    twin : ndarray of int
-        Number of each point; points at equal positions share one.
-    steps : list of Places
-        New points of each step, on the edges between two earlier ones.
+    ``parents`` (P, s) are segments, s = 2, or triangles, s = 3, of the mesh. ``corners`` are the
+    points of the parts: first the mesh's own, then new ones in the order of their making;
+    ``parent`` is the cell that each part lies in, ``twin`` a number of each point that points at
+    equal positions share, and ``steps`` are the new points of each step, on the edges between two
+    earlier ones.
     """
 
     def __init__(self, points: Array, parents: Indices) -> None:
@@ -127,12 +102,8 @@ class SplitCells:
     def edges(self, cells: Indices) -> tuple[Indices, Bools]:
         """Return a number for each edge of parts, the same for twins, and its direction.
 
-        Returns
-        -------
-        ndarray of int, shape (M, 1) or (M, 3)
-            Number of the edge that begins at each corner.
-        ndarray of bool
-            Whether the edge runs from the twin of the larger number to the twin of the smaller.
+        Edges, in rows of 1 or 3, begin at each corner; the mask is of those that run from the twin
+        of the larger number to that of the smaller.
         """
         start = self.twin[self.corners[cells]]
         stop = np.roll(start, -1, axis=1)
@@ -143,12 +114,8 @@ class SplitCells:
     def split(self, chosen: Indices, share: Array) -> Indices:
         """Split edges, and all parts at them, and return the indices of the new parts.
 
-        Parameters
-        ----------
-        chosen : ndarray of int, shape (E,)
-            Numbers of edges, sorted; at least one.
-        share : ndarray, shape (E,)
-            Where each edge is split, from its end of the smaller number.
+        ``chosen`` are numbers of edges, sorted, at least one; ``share`` is where each is split,
+        from its end of the smaller number.
         """
         touched = np.zeros(self.twin.max() + 1, np.bool_)
         # Both ends of an edge are packed in its number.
@@ -232,25 +199,12 @@ def rebuilt(
 ) -> pv.PolyData:
     """Return a mesh with split segments or triangles, with its data.
 
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Mesh that the parts lie in; not changed.
-    parts : SplitCells
-        Parts of its segments or triangles, in their order.
-    origin : ndarray of int or None
-        Cell of the mesh that each triangle was taken from; None for segments.
-    given : mapping of str to ndarray
-        Point arrays by name, with the rows of the new points.
-    places : str, optional
-        Name of a point array of places, which lie on their cells like the points.
-
-    Returns
-    -------
-    pyvista.PolyData
-        The points of the mesh first, with their index. Other point arrays are interpolated; unit
-        vectors keep their length. Integers, which may be labels, booleans and words are taken from
-        the nearest corner. Cell arrays are carried to all parts of a cell.
+    ``origin`` is the cell of the mesh that each triangle was taken from, None for segments;
+    ``new_rows`` has the rows of the new points by the name of their array, and ``places`` names a
+    point array of places, which lie on their cells like the points. The points of the mesh come
+    first, with their index. Other point arrays are interpolated; unit vectors keep their length.
+    Integers, which may be labels, booleans and words are taken from the nearest corner. Cell arrays
+    are carried to all parts of a cell.
     """
     out = pv.PolyData()
     shares = parts.shares()
@@ -310,19 +264,8 @@ def by_corner(mesh: pv.PolyData, name: str) -> pv.PolyData:
 
     Colours that run from one label to another would show those between them. Here each polygon with
     different corners is split: every corner has the part between it, the middles of its two sides
-    and the middle of the polygon.
-
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Surface, which is not changed.
-    name : str
-        Point array of labels, which becomes one of cells; NaN is a label.
-
-    Returns
-    -------
-    pyvista.PolyData
-        Polygons that are whole, then the parts; other arrays as :func:`rebuilt` carries them.
+    and the middle of the polygon. NaN is a label. Polygons that are whole come first, then the
+    parts, with other arrays as :func:`rebuilt` carries them.
     """
     if mesh.n_strips:
         mesh = mesh.triangulate()

@@ -82,14 +82,8 @@ def in_space(
 class CellTracer:
     """Curves in the triangles of a surface or the tetrahedra of a volume.
 
-    Parameters
-    ----------
-    mesh : pyvista.PolyData or pyvista.UnstructuredGrid
-        Triangles, or tetrahedra, with the point array TRACED; one of 6 components is a cross field.
-    normals : str, optional
-        Name of the point normals of a surface.
-    line_field : bool
-        Whether the vectors have no sign.
+    The point array TRACED of 6 components is a cross field; vectors of a ``line_field`` have no
+    sign.
     """
 
     def __init__(
@@ -171,15 +165,7 @@ class CellTracer:
     def even(
         self, seeds: CellPlaces | None, how: Tracing, spacing: float, report: Callable[[int], None]
     ) -> tuple[Curves, dict[str, float]]:
-        """Return evenly spaced curves, and facts on their evenness; ``report`` as for traced.
-
-        Parameters
-        ----------
-        seeds : CellPlaces, optional
-        how : Tracing
-        spacing : float
-            Distance between curves.
-        """
+        """Return evenly spaced curves, and facts on their evenness; ``report`` as for traced."""
         total = even.place_count(self.flow, spacing)
         curves, closed = even.evenly_spaced(
             self.flow, spacing, how, seeds=seeds, report=lambda done: report(100 * done // total)

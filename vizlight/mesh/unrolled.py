@@ -28,18 +28,11 @@ BEYOND = 1e-6
 class Faces:
     """Faces on a map.
 
-    Attributes
-    ----------
-    places : ndarray, shape (N, 2)
-        Longitude and latitude of each point: of the nodes in their order, then of more points.
-    nodes : ndarray of int, shape (N, 2)
-        Nodes between which each point is.
-    shares : ndarray, shape (N,)
-        Share of the way from the first to the second.
-    corners, ends : ndarray of int
-        Points of all faces one after the other, and where each face ends, from 0.
-    faces : ndarray of int
-        Face of the file that each one is a part of: all in their order, then further parts.
+    ``places`` are longitude and latitude of each point: of the nodes in their order, then of more
+    points, each at a share of the way from the first of two ``nodes`` to the second. ``corners``
+    are the points of all faces one after the other, ``ends`` where each face ends, from 0;
+    ``faces`` is the face of the file that each one is a part of: all in their order, then further
+    parts.
     """
 
     places: Array
@@ -52,10 +45,7 @@ class Faces:
     def at_points(self, rows: AnyArray) -> AnyArray:
         """Return the values of the points by those of the nodes, in the type of these.
 
-        Parameters
-        ----------
-        rows : ndarray, shape (nodes, ...)
-            Values of the nodes; those that are no floating-point numbers are not mixed.
+        Those that are no floating-point numbers are not mixed.
         """
         if rows.dtype.kind != "f":
             return rows[np.where(self.shares > 0.5, *self.nodes.T[::-1])]
@@ -85,15 +75,7 @@ class _Ring(Columns):
 
 
 def plain(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
-    """Return faces in a plane, as :func:`unrolled` those of a globe.
-
-    Parameters
-    ----------
-    x, y : ndarray, shape (N,)
-        Coordinates of each node.
-    ids, there : ndarray, shape (M, K)
-        Nodes of each face, and a mask of the valid ones.
-    """
+    """Return faces in a plane, as :func:`unrolled` those of a globe."""
     ends = np.concatenate([[0], np.cumsum(there.sum(axis=1))])
     node = np.arange(len(x))
     nodes = np.column_stack([node, node])
@@ -104,17 +86,10 @@ def plain(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
 def unrolled(x: Array, y: Array, ids: Indices, there: Bools) -> Faces:
     """Return the faces of a globe on a map from -180 to 180 degrees; a region in one piece.
 
-    A face across the date line is cut in two parts. A face with one corner at a pole has
-    that corner at the longitudes of both neighbours, and a face around a pole reaches up to it.
-
-    Parameters
-    ----------
-    x, y : ndarray, shape (N,)
-        Longitude and latitude of each node, in degrees.
-    ids : ndarray of int, shape (M, K)
-        Nodes of each face, in the order around it.
-    there : ndarray of bool, shape (M, K)
-        Mask of the valid corners, three in each row at least.
+    A face across the date line is cut in two parts. A face with one corner at a pole has that
+    corner at the longitudes of both neighbours, and a face around a pole reaches up to it. ``ids``
+    (M, K) are the nodes of each face, in the order around it, and ``there`` masks the valid
+    corners, three in each row at least.
     """
     at_pole = np.abs(y) > 90 - AT_POLE
     # Missing corners repeat the corner before.
@@ -274,19 +249,8 @@ def _cut(ring: _Ring, side: float) -> _Ring:
 def of_grid(grid: pv.StructuredGrid, there: Bools) -> tuple[pv.PolyData | pv.UnstructuredGrid, int]:
     """Return the cells of a grid of longitudes and latitudes that goes around a pole.
 
-    Parameters
-    ----------
-    grid : pyvista.StructuredGrid
-        Grid in degrees, of one layer or of levels.
-    there : ndarray of bool, shape (ny, nx)
-        Mask of the nodes that have a place.
-
-    Returns
-    -------
-    pyvista.PolyData or pyvista.UnstructuredGrid
-        Faces, or cells between levels, with the arrays of the points.
-    int
-        Number of cells that are left out, at a node without a place.
+    The grid has one layer or levels; its cells have the arrays of the points. The second result
+    is the number of cells that are left out, at a node without a place.
     """
     nx, ny, nz = grid.dimensions
     x, y, z = np.asarray(grid.points, dtype=np.float64).T.reshape(3, nz, ny * nx)
@@ -307,14 +271,9 @@ def of_grid(grid: pv.StructuredGrid, there: Bools) -> tuple[pv.PolyData | pv.Uns
 def turn_vectors(mesh: pv.DataSet, faces: Faces, at: Array) -> None:
     """Turn the vectors of a mesh of faces at a pole, and where faces are cut, to its meridians.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh on the points of the faces, of each level those of all nodes first, with vectors that
-        point east, north and perhaps up at the nodes.
-    faces : Faces
-    at : ndarray, shape (N, 2)
-        Longitude and latitude of each node in degrees.
+    The mesh is on the points of the faces, of each level those of all nodes first, with vectors
+    that point east, north and perhaps up at the nodes; ``at`` (N, 2) has their longitude and
+    latitude in degrees.
     """
     for group in meaning.components(mesh):
         # Those along the rows of the grid, which stand turned beside them, are of no meridian.
@@ -334,14 +293,6 @@ def _from_meridians(faces: Faces, at: Array, rows: Raw) -> Array:
     """Return vectors at the points of faces by those of the nodes, east, north and perhaps up.
 
     At a point between nodes, and at a pole, these directions are others than at the nodes.
-
-    Parameters
-    ----------
-    faces : Faces
-    at : ndarray, shape (N, 2)
-        Longitude and latitude of each node in degrees.
-    rows : ndarray, shape (N, 2) or (N, 3)
-        Vectors of the nodes.
     """
     count = rows.shape[1]
     in_space = np.einsum("ij,ijk->ik", rows.astype(np.float64), globes.directions(at)[:, :count])

@@ -14,16 +14,9 @@ ISOTROPIC = 1e-6
 def outer(tangents: Array) -> Array:
     """Return the sums of the outer products of tangents, whatever their signs.
 
-    Parameters
-    ----------
-    tangents : ndarray, shape (..., k, n)
-        Tangents of any length. One that is not finite counts as zero.
-
-    Returns
-    -------
-    ndarray of float64, shape (..., n, n)
-        ``t t^T / |t|`` of one tangent over the largest length of all, so that long ones count more;
-        of k tangents the projection on the space that they span.
+    One tangent (..., 1, n) gives ``t t^T / |t|`` over the largest length of all, so that long ones
+    count more; k of any length give the projection on the space that they span. One that is not
+    finite counts as zero.
     """
     rows = np.array(tangents, dtype=np.float64)
     rows[~np.all(np.isfinite(rows), axis=-1)] = 0
@@ -43,21 +36,11 @@ def outer(tangents: Array) -> Array:
 def principal(products: Array, k: int = 1) -> tuple[Array, Array]:
     """Return the space of k dimensions that means of outer products are closest to.
 
-    Parameters
-    ----------
-    products : ndarray, shape (..., n, n)
-        Symmetric matrices, such as means of :func:`outer` or tensors of diffusion.
-    k : int, default: 1
-        Dimension of the space.
-
-    Returns
-    -------
-    tangents : ndarray of float64, shape (..., k, n)
-        Eigenvectors of the k largest eigenvalues, the largest first, of length 1 and of any sign.
-        They are zero where the space is not unique: where the matrix is zero or not finite, or the
-        eigenvalues k and k + 1 differ by less than 1e-6 of the sum of all magnitudes.
-    anisotropy : ndarray of float64, shape (...)
-        Difference of the eigenvalues k and k + 1, as a share of the sum of all magnitudes.
+    Matrices (..., n, n) are symmetric, such as means of :func:`outer` or tensors of diffusion.
+    Tangents (..., k, n) are eigenvectors of the k largest eigenvalues, the largest first, of length
+    1 and of any sign. They are zero where the space is not unique: where the matrix is zero or not
+    finite, or the eigenvalues k and k + 1 differ by less than 1e-6 of the sum of all magnitudes.
+    The anisotropy (...) is their difference as a share of that sum.
     """
     matrices = np.asarray(products, dtype=np.float64)
     good = np.all(np.isfinite(matrices), axis=(-1, -2))

@@ -31,14 +31,8 @@ ALONG = 8.0
 class Highlight(NamedTuple):
     """The highlight of one light.
 
-    Attributes
-    ----------
-    model : {"phong", "blinn", "cylinder"}
-        Reflection model that is computed.
-    shininess : float
-        Power of the model.
-    half : vector or None
-        Unit half vector, where it is the same at all points and used as such.
+    ``shininess`` is the power of the model that is computed, "phong", "blinn" or "cylinder";
+    ``half`` is the unit half vector, where it is the same at all points and used as such.
     """
 
     model: str

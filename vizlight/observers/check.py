@@ -467,20 +467,8 @@ def errors_at(
 ) -> tuple[Array, int]:
     """Return the errors of light at rows, and how many only one implementation could light.
 
-    Parameters
-    ----------
-    rows : ndarray of int, shape (M,)
-        Points that are computed again.
-    inputs, scene, options
-        Inputs, scene and options of the light, as :func:`vizlight.shading.engine.run` takes them.
-    shading : Shading
-        Light that is checked.
-
-    Returns
-    -------
-    ndarray
-        Largest difference of luminance and colour of each row that both could light.
-    int
+    ``inputs``, ``scene`` and ``options`` are as :func:`vizlight.shading.engine.run` takes them; an
+    error is the largest difference of luminance and colour of a row that both could light.
     """
     # The points are less an origin, and lights and eye are moved likewise.
     if inputs.origin is not None:

@@ -46,14 +46,9 @@ TRIES = 8
 class Crossings(NamedTuple):
     """Crossings at which both lines are seen on both sides, the nearer one in the middle.
 
-    Attributes
-    ----------
-    at : ndarray, shape (N, 2)
-        Places in pixels from the upper left corner, to the right and down.
-    front, back : ndarray of int, shape (N,)
-        Segments of the nearer line and of the other.
-    left_out : int
-        Number of other places where lines cross: beside a third line, or where one ends.
+    ``at`` (N, 2) is in pixels from the upper left corner, to the right and down; ``front`` and
+    ``back`` are segments of the nearer line and of the other, and ``left_out`` is the number of
+    other places where lines cross: beside a third line, or where one ends.
     """
 
     at: Array
@@ -65,14 +60,7 @@ class Crossings(NamedTuple):
 def crossings_of(lines: Segments, count: int, random: np.random.Generator) -> Crossings:
     """Return crossings of the lines of a picture.
 
-    Parameters
-    ----------
-    lines : Segments
-        Lines of the picture.
-    count : int
-        Largest number of crossings.
-    random : numpy.random.Generator
-        Generator that chooses among them if they are more.
+    ``random`` chooses ``count`` among them if they are more.
     """
     number = lines.number
     pairs = []
@@ -116,18 +104,8 @@ def answers(crossings: Crossings, lines: Segments, seen: SeenPicture, noise: flo
     """Return which line a reader takes for the nearer one: 1 that, -1 the other, 0 neither.
 
     It is the line with borders that are seen on both sides: differences of 3 deviations of the
-    noise at least, and by half as much more than at the borders of the other.
-
-    Parameters
-    ----------
-    crossings : Crossings
-        Crossings.
-    lines : Segments
-        Lines of the picture.
-    seen : SeenPicture
-        The picture as the eye sees it.
-    noise : float
-        Noise of the eye in CIELAB.
+    noise at least, and by half as much more than at the borders of the other. The noise is that of
+    the eye in CIELAB.
     """
     middle = _read(seen, crossings.at)
     borders = []

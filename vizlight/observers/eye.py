@@ -86,12 +86,8 @@ def lab_of_opponent(channels: Array) -> Array:
 class Eye:
     """An eye that looks at a picture from some distance.
 
-    Parameters
-    ----------
-    pixels_per_degree : float
-        Number of pixels of the picture in a degree of the visual field.
-    noise : float, default: 2.3
-        Standard deviation of the noise of the reader in CIELAB.
+    ``pixels_per_degree`` counts pixels of the picture in a degree of the visual field; ``noise`` is
+    the standard deviation of the noise of the reader in CIELAB.
     """
 
     pixels_per_degree: float
@@ -139,12 +135,8 @@ class Eye:
     def look(self, picture: Array, drawn: Bools) -> SeenPicture:
         """Return a picture as the eye sees it.
 
-        Parameters
-        ----------
-        picture : ndarray, shape (H, W, 3)
-            sRGB values from 0 to 1.
-        drawn : ndarray of bool, shape (H, W)
-            Pixels that show anything but the background.
+        The picture (H, W, 3) has sRGB values from 0 to 1, and ``drawn`` masks pixels that show
+        anything but the background.
         """
         channels = opponent(picture)
         ground = np.zeros(3) if drawn.all() else np.median(channels[~drawn], axis=0)
@@ -159,14 +151,9 @@ class Eye:
 class SeenPicture:
     """A picture as an eye sees it.
 
-    Attributes
-    ----------
-    channels : ndarray, shape (H, W, 3)
-        Opponent channels of the filtered picture.
-    cover : ndarray, shape (H, W, 3)
-        Share of the drawing in each channel of each pixel; the rest is background.
-    ground : ndarray, shape (3,)
-        Opponent channels of the background.
+    ``channels`` (H, W, 3) are opponent channels of the filtered picture, ``cover`` is the share of
+    the drawing in each of them, the rest is background, and ``ground`` has the opponent channels of
+    that.
     """
 
     channels: Array
@@ -185,12 +172,7 @@ class SeenPicture:
     def pooled(self, row: Indices, column: Indices, group: Indices) -> SeenPicture:
         """Return the picture with the mean of each group of pixels in place of its colours.
 
-        Parameters
-        ----------
-        row, column : ndarray of int, shape (M,)
-            Pixels.
-        group : ndarray of int, shape (M,)
-            Numbers of their groups, 0 or more.
+        Groups have numbers of 0 or more.
         """
         channels, cover = self.channels.copy(), self.cover.copy()
         # The eye sees no less than no light.

@@ -43,24 +43,13 @@ BLOCK = 1 << 16
 class Segments(NamedTuple):
     """Segments of lines that a picture shows, in pixels from the upper left corner.
 
-    Attributes
-    ----------
-    number : ndarray of int, shape (H, W)
-        Segment that each pixel shows, -1 without one.
-    start, way : ndarray, shape (S, 2)
-        Beginning of each segment, to the right and down, and the vector from it to its end.
-    along : ndarray, shape (S,)
-        Length of the line before the segment; different lines are far apart.
-    line : ndarray of int, shape (S,)
-        Number of the line.
-    width : ndarray, shape (S,)
-        Width of the line in pixels.
-    ahead : ndarray, shape (S,)
-        1 where the sense of the data is that of the segment, -1 against it, 0 without a sense.
-    course : AllSegments or None
-        All segments of the lines, if these are those that are seen.
-    lean : ndarray, shape (S,), or None
-        1 where lines are wider ahead of their middle, as the segment runs, -1 behind it, else 0.
+    ``number`` (H, W) is the segment that each pixel shows, -1 without one. ``start`` and ``way``
+    (S, 2) are the beginning of each, to the right and down, and the vector to its end; ``along`` is
+    the length of the line before it, with different lines far apart, and ``width`` that of the line
+    in pixels. ``ahead`` is 1 where the sense of the data is that of the segment, -1 against it, 0
+    without a sense; ``lean`` is 1 where lines are wider ahead of their middle, as the segment runs,
+    -1 behind it, else 0. ``course`` has all segments of the lines, if these are those that are
+    seen.
     """
 
     number: Indices
@@ -95,17 +84,7 @@ class Segments(NamedTuple):
 
 
 def segments_of(parts: Sequence[SeenMesh], pixels: Pixels, camera: pv.Camera) -> Segments | None:
-    """Return the segments of the lines of a picture, None without lines.
-
-    Parameters
-    ----------
-    parts : sequence of SeenMesh
-        Meshes that the picture shows.
-    pixels : Pixels
-        Pixels that show them.
-    camera : pyvista.Camera
-        Camera of the picture.
-    """
+    """Return the segments of the lines of a picture, None without lines."""
     width, height = pixels.size
     number = np.full((height, width), -1, dtype=np.intp)
     widths: list[Array] = []
@@ -143,14 +122,7 @@ class _Rows(NamedTuple):
 class AllSegments:
     """All segments of the lines of a picture, made in blocks and not stored.
 
-    Parameters
-    ----------
-    parts : sequence of SeenMesh
-        Meshes that the picture shows.
-    size : (int, int)
-        Width and height of the picture.
-    camera : pyvista.Camera
-        Camera of the picture.
+    ``size`` is the width and height of the picture.
     """
 
     def __init__(self, parts: Sequence[SeenMesh], size: tuple[int, int], camera: pv.Camera) -> None:
@@ -213,14 +185,9 @@ def _last(rising: Array, values: Array) -> Indices:
 class Strokes(NamedTuple):
     """Strokes as a reader sees them, of data that have a sense.
 
-    Attributes
-    ----------
-    light : ndarray, shape (N,)
-        Lightness above the ground, in CIELAB: the end of a stroke that is ahead less the other.
-    form : ndarray, shape (N,)
-        Sense by the widths of the stroke, :func:`ahead_of`.
-    pixels : ndarray of int, shape (N,)
-        Number of pixels that show the stroke.
+    ``light`` is the lightness above the ground, in CIELAB: the end of a stroke that is ahead less
+    the other. ``form`` is the sense by the widths of the stroke, :func:`ahead_of`, and ``pixels``
+    the number of pixels that show it.
     """
 
     light: Array
@@ -233,17 +200,8 @@ def turned_lines(
 ) -> Indices:
     """Return the line that each pixel would show if the widths of lines ran the other way.
 
-    Parameters
-    ----------
-    parts, pixels, camera
-        As for :func:`segments_of`, of parts with lines.
-    occluders : sequence of vtkActor
-        Actors that hide the meshes.
-
-    Returns
-    -------
-    ndarray of int, shape (H, W)
-        Numbers of the lines as in ``Segments.shown``.
+    Numbers (H, W) of the lines are as in ``Segments.shown``, arguments as for :func:`segments_of`;
+    ``occluders`` hide the meshes.
     """
     if any(part.shares is not None for part in parts):
         pixels = visible([part.turned for part in parts], camera, pixels.size, occluders)
@@ -254,16 +212,7 @@ def turned_lines(
 def strokes_of(lines: Segments, turned: Indices, seen: SeenPicture, eye: Eye) -> Strokes:
     """Return how the third ahead differs from the third behind, of each stroke that is seen.
 
-    Parameters
-    ----------
-    lines : Segments
-        Lines of the picture.
-    turned : ndarray of int, shape (H, W)
-        Lines as if their widths ran the other way, :func:`turned_lines`.
-    seen : SeenPicture
-        The picture as the eye sees it.
-    eye : Eye
-        Eye.
+    ``turned`` is that of :func:`turned_lines`.
     """
     row, column = np.nonzero(lines.number >= 0)
     keep = lines.ahead[lines.number[row, column]] != 0
@@ -297,22 +246,8 @@ def strokes_of(lines: Segments, turned: Indices, seen: SeenPicture, eye: Eye) ->
 def above_ground(seen: SeenPicture, covered: Bools, eye: Eye) -> Array:
     """Return how colours differ from the bare ground beside them.
 
-    It is the mean of a Gaussian of the variance of the window, so that a ground of changing
-    colours is none of its marks.
-
-    Parameters
-    ----------
-    seen : SeenPicture
-        The picture as the eye sees it.
-    covered : ndarray of bool, shape (H, W)
-        Pixels of lines and glyphs.
-    eye : Eye
-        Eye.
-
-    Returns
-    -------
-    ndarray, shape (H, W, 3)
-        Differences in CIELAB.
+    It is the mean of a Gaussian of the variance of the window, so that a ground of changing colours
+    is none of its marks. Differences are in CIELAB; ``covered`` masks pixels of lines and glyphs.
     """
     spread, bare = _window(eye) / math.sqrt(12), ~covered * 1.0
     colors = gaussian_filter(bare[..., np.newaxis] * seen.colors, (spread, spread, 0.0))
@@ -333,21 +268,9 @@ def grain_of(seen: SeenPicture, eye: Eye, seed: int) -> Array:
     It is the structure tensor of a window of 8 arc minutes (Bigun and Granlund 1987): the grain is
     across the direction in which the colours change most. Changes over more than the window, such
     as shading, are no grain. The eye has channels for fine and for coarse marks: changes are those
-    of a pixel, and of half of the variance of the window, in which the noise of pixels is less.
-
-    Parameters
-    ----------
-    seen : SeenPicture
-        The picture as the eye sees it.
-    eye : Eye
-        Eye: its noise is added to each pixel.
-    seed : int
-        Seed of the noise.
-
-    Returns
-    -------
-    ndarray, shape (H, W, CHANNELS, 3)
-        Mean products of the changes to the right and down in each channel: xx, xy, yy.
+    of a pixel, and of half of the variance of the window, in which the noise of pixels is less. The
+    result (H, W, CHANNELS, 3) has mean products of the changes to the right and down in each
+    channel: xx, xy, yy. The noise of the eye is added to each pixel.
     """
     random = np.random.default_rng(seed)
     noisy = seen.colors + random.normal(0.0, eye.noise, seen.colors.shape)
@@ -380,15 +303,9 @@ def along_grain(tensor: Array) -> Array:
 class Glyphs(NamedTuple):
     """Glyphs of a picture, in pixels from the upper left corner, to the right and down.
 
-    Attributes
-    ----------
-    number, turned : ndarray of int, shape (H, W)
-        Glyph that each pixel shows, and would show if each were turned round about its middle; -1
-        without one.
-    middle, way : ndarray, shape (G, 2)
-        Middle of each glyph, and unit course of its vector.
-    reach : ndarray, shape (G,)
-        Half of the length of the glyph along its course.
+    ``number`` and ``turned`` (H, W) are the glyph that each pixel shows, and would show if each
+    were turned round about its middle, -1 without one; ``way`` is the unit course of its vector,
+    and ``reach`` half of the length of the glyph along that.
     """
 
     number: Indices
@@ -463,22 +380,9 @@ def ahead_of(number: Indices, turned: Indices, ink: Array, bare: Bools, eye: Eye
     that of the bare pixels that it would have then. It is seen if it is the noise of the eye at
     least, and 3 deviations of the means over as many square arc minutes (Rose 1948). Where a
     surface hides all of one side, the other one is compared with half of the contrast of the mark.
-
-    Parameters
-    ----------
-    number, turned : ndarray of int, shape (H, W)
-        Mark that each pixel shows, and would show if each were turned round; -1 without one.
-    ink : ndarray, shape (H, W)
-        Contrast with the surroundings.
-    bare : ndarray of bool, shape (H, W)
-        Pixels without marks.
-    eye : Eye
-        Eye.
-
-    Returns
-    -------
-    ndarray, shape (G,)
-        1 as they are, -1 turned, 0 for neither, and NaN for marks without a pixel.
+    ``number`` and ``turned`` are as for :class:`Glyphs`, ``ink`` is the contrast with the
+    surroundings, and ``bare`` masks pixels without marks. The result is 1 as they are, -1 turned, 0
+    for neither, and NaN for marks without a pixel.
     """
     count = 1 + int(max(number.max(), turned.max()))
 
@@ -524,16 +428,9 @@ def lengths_of(glyphs: Glyphs, ink: Array, least: float) -> Array:
 def two_sides(right: float, wrong: float, total: int) -> float:
     """Return the bits that answers give of a question of two sides.
 
-    It is the information of a channel that is silent at some places and wrong at others,
-    ``(t + w) / n (1 - H(t / (t + w)))``, less the bias of a sample, ``1 / (2 n ln 2)`` (Miller
-    1955); 0 where as many answers are wrong as right.
-
-    Parameters
-    ----------
-    right, wrong : float
-        Numbers of right and of wrong answers, or sums of their weights, whose mean is 1.
-    total : int
-        Number of places, at least 1.
+    It is the information of a channel that is silent at some places and wrong at others, ``(t + w)
+    / n (1 - H(t / (t + w)))``, less the bias of a sample, ``1 / (2 n ln 2)`` (Miller 1955); 0 where
+    as many answers are wrong as right. Numbers of answers may be sums of weights, 1 in the mean.
     """
     if right <= wrong:
         return 0.0

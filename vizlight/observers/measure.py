@@ -99,26 +99,12 @@ MATCHED: dict[str, type[Figure]] = {
 class SeenPlaces(Columns):
     """Places of one mesh in the picture.
 
-    Attributes
-    ----------
-    part : SeenMesh
-        Mesh.
-    here, right, up : Sample
-        Data at the places, and a pixel beside and above or below them.
-    apart : ndarray of bool, shape (M,)
-        Whether both neighbours show the same mesh.
-    colors : Colors
-        Colours that a reader has.
-    unit : ndarray, shape (M,)
-        Size of a pixel in the unit of the mesh.
-    grain : ndarray of complex, shape (M, CHANNELS)
-        Grain of the picture in each channel, :func:`vizlight.observers.lines.along_grain`.
-    course : ndarray, shape (M,)
-        Directions of single tangents in the picture in degrees, from right toward up.
-    thing : ndarray of int, shape (M,)
-        Numbers of the things seen as a whole, ``NO_THING`` on surfaces.
-    length : ndarray, shape (M,), or None
-        Lengths in pixels at which glyphs are seen.
+    ``here``, ``right`` and ``up`` are data at the places, and a pixel beside and above or below
+    them; ``apart`` says that both neighbours show the same mesh. ``unit`` is the size of a pixel in
+    the unit of the mesh, ``grain`` that of :func:`vizlight.observers.lines.along_grain`, ``course``
+    the directions of single tangents in the picture in degrees, from right toward up, ``thing`` the
+    numbers of the things seen as a whole, ``NO_THING`` on surfaces, and ``length`` the lengths in
+    pixels at which glyphs are seen.
     """
 
     part: SeenMesh
@@ -136,12 +122,8 @@ class SeenPlaces(Columns):
     def structure(self, turn: Callable[[Sample], Array], times: int = 1) -> Array:
         """Return the length in pixels within which data turn by 90 degrees, NaN where flat.
 
-        Parameters
-        ----------
-        turn : callable
-            Function from a sample to unit vectors.
-        times : int, default: 1
-            Angles between these vectors as multiples of those of the data.
+        ``turn`` takes a sample to unit vectors; angles between these are ``times`` those of the
+        data.
         """
         here = turn(self.here)
         steps = []
@@ -169,31 +151,9 @@ def measure(
 ) -> Legibility:
     """Return the figures of a picture.
 
-    Parameters
-    ----------
-    picture : ndarray, shape (H, W, 3)
-        sRGB values from 0 to 1.
-    parts : sequence of SeenMesh
-        Meshes that the picture shows.
-    camera : pyvista.Camera
-        Camera of the picture.
-    size_mm, distance_mm : float
-        Width of the picture, and distance of the eye.
-    noise : float
-        Noise of the eye in CIELAB.
-    samples : int
-        Largest number of places.
-    seed : int
-        Seed of the places and of the noise.
-    occluders : sequence of vtkActor
-        Actors that hide the meshes.
-    notes : sequence of str
-        Notes on data that are left out already.
-
-    Raises
-    ------
-    ValueError
-        If no pixel shows a mesh.
+    The picture (H, W, 3) has sRGB values from 0 to 1; ``size_mm`` is its width, ``distance_mm``
+    that of the eye, and ``noise`` that of the eye in CIELAB. ``occluders`` hide the meshes, and
+    ``notes`` are on data that are left out already.
     """
     height, width = picture.shape[:2]
     eye = Eye.at(width, size_mm, distance_mm, noise)

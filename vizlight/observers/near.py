@@ -36,17 +36,10 @@ RINGS = 4
 class Near(NamedTuple):
     """Surroundings of some triangles or points.
 
-    Attributes
-    ----------
-    mesh : pyvista.PolyData
-        All polygons that have a point in common with the triangles, with the arrays of their light;
-        all points that tell the normals of points.
-    light : LightOptions
-        How it is lit.
-    corners : ndarray of int, shape (M, s)
-        Corners of the triangles, or the points, in it.
-    origin : ndarray of int
-        Point of the large mesh that each of its points is.
+    The mesh has all polygons that have a point in common with the triangles, with the arrays of
+    their light, or all points that tell the normals of points; ``corners`` are those of the
+    triangles, or the points, in it, and ``origin`` is the point of the large mesh that each of its
+    points is.
     """
 
     mesh: pv.PolyData
@@ -58,20 +51,10 @@ class Near(NamedTuple):
 def near(mesh: pv.DataSet, surface: DrawnTriangles, cells: Indices, light: LightOptions) -> Near:
     """Return the surroundings of some triangles of a mesh, with the normals of the whole.
 
-    Normals are means over the faces around a point, and over points that slivers join. A part
-    does not show which side of the surface is outside. ``feature_angle="auto"`` decides by the
-    edges of these surroundings whether sharp edges are creases.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh.
-    surface : DrawnTriangles
-        Its triangles.
-    cells : ndarray of int, shape (M,)
-        Numbers of the triangles.
-    light : LightOptions
-        How the mesh is lit, with the least angle of an edge that is sharp.
+    Normals are means over the faces around a point, and over points that slivers join. A part does
+    not show which side of the surface is outside. ``feature_angle="auto"`` decides by the edges of
+    these surroundings whether sharp edges are creases. The light has the least angle of an edge
+    that is sharp.
     """
     corners, polygon = surface[cells], surface.polygon(cells)
     points = np.unique(corners)
@@ -111,16 +94,8 @@ def tangents_at(
 ) -> Array:
     """Return the tangents of lines at some of their points, made of some lines at a time.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh.
-    lines : DrawnSegments
-        Its segments: all of lines of one, or none that may be joined with those of another line.
-    points : ndarray of int, shape (M,)
-        Rising numbers of points of lines.
-    tangents_of : callable
-        Function from a mesh of lines to the tangents at its points.
+    The segments are all of lines of one, or none that may be joined with those of another line;
+    ``points`` are rising numbers of points of lines.
     """
     around, tangents = lines.around(points), np.zeros((len(points), 3))
     for _ in range(RINGS if lines.are_single else 0):
@@ -154,17 +129,7 @@ def near_points(points: ArraySource, cells: Indices, light: LightOptions) -> Nea
 
 
 def around_points(mesh: pv.DataSet, corners: Indices, light: LightOptions) -> Near:
-    """Return some points of a mesh, with the cells around each, of which its tangents are means.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh.
-    corners : ndarray of int
-        Numbers of points of the mesh.
-    light : LightOptions
-        How the mesh is lit, by names of arrays of its cells.
-    """
+    """Return some points of a mesh, with the cells around each, of which its tangents are means."""
     origin, at = np.unique(corners, return_inverse=True)
     part, own = _star(mesh, light, origin, *_pairs(mesh, origin))
     return Near(part, own, at.reshape(corners.shape), origin)
@@ -223,14 +188,7 @@ def _blank(mesh: pv.DataSet, cells: Indices) -> Bools:
 def neighbours(points: ArraySource, ids: Indices, count: int) -> Indices:
     """Return the numbers of all points that are among the nearest of some of them.
 
-    Parameters
-    ----------
-    points : ArraySource, shape (N, 3)
-        Points.
-    ids : ndarray of int, shape (M,)
-        Numbers of some points.
-    count : int
-        Number of points that are nearest to each.
+    ``count`` is the number of points that are nearest to each.
     """
     places = rows_of(points, ids).astype(np.float64)
     far = np.full((len(ids), count), np.inf)

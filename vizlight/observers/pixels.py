@@ -46,18 +46,10 @@ SPARSE = 2
 class Cells(NamedTuple):
     """Cells of one mesh as they are drawn.
 
-    Attributes
-    ----------
-    points : ArraySource, shape (N, 3)
-        Points of the mesh.
-    corners : ndarray of int or DrawnCells, shape (C, s)
-        Points, segments or triangles.
-    width : float
-        Width of points and of lines in pixels, the least width of lines that have a diameter.
-    diameter : float or None
-        Diameter of lines in the unit of the mesh.
-    shares : ndarray, shape (N,), or None
-        Shares of the width, from 0 to 1, that lines have at their points; None for one width.
+    ``corners`` (C, s) are points, segments or triangles; ``width`` is that of points and of lines
+    in pixels, the least width of lines that have a ``diameter``, in the unit of the mesh.
+    ``shares`` of the width, from 0 to 1, are those that lines have at their points; None for one
+    width.
     """
 
     points: ArraySource
@@ -147,18 +139,9 @@ def with_own_points(source: ArraySource, corners: Indices) -> tuple[Array, Indic
 class Pixels(Columns):
     """Pixels of a picture that show a cell.
 
-    Attributes
-    ----------
-    row, column : ndarray of int, shape (M,)
-        Places of the pixels, from the upper left.
-    part : ndarray of int, shape (M,)
-        Number of the mesh that each pixel shows.
-    cell : ndarray of int, shape (M,)
-        Number of the cell of that mesh.
-    size : (int, int)
-        Width and height of the picture.
-    center : (float, float)
-        Place of the middle of the picture from the axis of the view, as in ``at``.
+    ``row`` and ``column`` are from the upper left, ``part`` is the number of the mesh that each
+    pixel shows, ``cell`` that of the cell of it, and ``center`` the place of the middle of the
+    picture from the axis of the view, as in ``at``.
     """
 
     row: Indices
@@ -185,25 +168,8 @@ def visible(
 ) -> Pixels:
     """Return the pixels of a picture that show a cell, and which.
 
-    Parameters
-    ----------
-    meshes : sequence of Cells
-        Cells of each mesh.
-    camera : pyvista.Camera
-        Camera of the picture; its clipping range is set to show all.
-    size : (int, int)
-        Width and height in pixels.
-    occluders : sequence of vtkActor
-        Actors without cells that hide cells.
-
-    Returns
-    -------
-    Pixels
-
-    Raises
-    ------
-    BackendError
-        If no OpenGL library can draw here.
+    The clipping range of the camera is set to show all; ``occluders`` are actors without cells that
+    hide cells. BackendError is raised if no OpenGL library can draw.
     """
     width, height = size
     with window_class(choose_backend()):

@@ -70,12 +70,8 @@ SHARPNESS = (1.0, 0.4, 0.15, 0.05)
 class Colors(Columns):
     """Colours that a reader has of places.
 
-    Attributes
-    ----------
-    lab : ndarray, shape (M, 3)
-        CIELAB without the share of the background.
-    deviation : ndarray, shape (M, 3)
-        Standard deviation of each component.
+    They are in CIELAB, without the share of the background, with the standard deviation of each
+    component.
     """
 
     lab: Array
@@ -115,17 +111,9 @@ def colors_at(
 class Reading(NamedTuple):
     """Answers of a reader at some places.
 
-    Attributes
-    ----------
-    error : ndarray, shape (M,)
-        Error of each answer.
-    truth : ndarray, shape (S, M)
-        Probability that the reader gives to the right candidate, for each sharpness.
-    candidates : int
-        Number of candidates.
-    other_error, other_truth : ndarray
-        The same, compared with the data of other places, at random: the result of guessing where
-        data are alike.
+    ``truth`` (S, M) is the probability that the reader gives to the right candidate, for each
+    sharpness. The other two are the same compared with the data of other places, at random: the
+    result of guessing where data are alike.
     """
 
     error: Array
@@ -149,12 +137,8 @@ def elsewhere(count: int) -> Indices:
 def likelihood(colors: Colors, tables: Array) -> Array:
     """Return the logarithm of the likelihood of each candidate at each place, shape (M, A).
 
-    Parameters
-    ----------
-    colors : Colors
-        Colours of M places.
-    tables : ndarray, shape (L, A, 3)
-        Colours of the candidates in CIELAB, each in any of L lights, with their likelihoods summed.
+    ``tables`` (L, A, 3) are colours of the candidates in CIELAB, each in any of L lights, with
+    their likelihoods summed.
     """
     logarithms = np.empty((len(colors.lab), tables.shape[1]))
     for rows, each in _in_lights(colors, tables):
@@ -184,13 +168,7 @@ def of_truth(logarithms: Array, *truths: Indices) -> Array:
     """Return the probability of right candidates for each sharpness, shape (T, S, M).
 
     Candidates are equally likely before; their probabilities at a place have the sum 1.
-
-    Parameters
-    ----------
-    logarithms : ndarray, shape (M, A)
-        Logarithms of the likelihoods of the candidates.
-    *truths : ndarray of int, shape (M,)
-        Right candidates of the places, in T ways.
+    ``logarithms`` (M, A) are of their likelihoods; right candidates come in T ways.
     """
     below = logarithms - logarithms.max(axis=1, keepdims=True)
     probabilities = np.empty((len(truths), len(SHARPNESS), len(below)))
@@ -244,24 +222,11 @@ def most_told(readings: list[Reading]) -> float:
 def read_direction(sample: Sample, middle: Array, colors: Colors, start: float) -> Reading:
     """Return the answers of a reader who matches hues with a disc of directions.
 
-    The disc faces the eye at ``middle`` and has tangents in all directions. The chroma of a
-    place may be less than that of the disc, since tangents that leave the picture are paler.
-
-    Parameters
-    ----------
-    sample : Sample
-        Places with one tangent each, which has a length in the picture.
-    middle : ndarray, shape (3,)
-        Place of the key.
-    colors : Colors
-        Colours of the places.
-    start : float
-        Angle of the first candidate in degrees, which should be random.
-
-    Returns
-    -------
-    Reading
-        Angles in degrees, from 0 to 90, between directions in the picture.
+    The disc faces the eye at ``middle`` and has tangents in all directions. The chroma of a place
+    may be less than that of the disc, since tangents that leave the picture are paler. Places have
+    one tangent each, which has a length in the picture; ``start``, the angle of the first candidate
+    in degrees, should be random. Errors are angles in degrees, from 0 to 90, between directions in
+    the picture.
     """
     hues = lab(shown(key(sample, middle, np.radians(start + np.arange(ANGLES)))))[:, 1:]
     chroma = np.linalg.norm(hues, axis=1)
@@ -277,21 +242,9 @@ def read_direction(sample: Sample, middle: Array, colors: Colors, start: float) 
 def read_grain(grain: Array, angle: Array, start: float) -> Reading:
     """Return the answers of a reader who takes the grain of a picture for the course of tangents.
 
-    The more of all change is across the grain, the more the reader believes it.
-
-    Parameters
-    ----------
-    grain : ndarray of complex, shape (M,)
-        Grain at each place, as :func:`vizlight.observers.lines.along_grain` returns it.
-    angle : ndarray, shape (M,)
-        True directions in degrees, from right toward up.
-    start : float
-        Angle of the first candidate in degrees, which should be random.
-
-    Returns
-    -------
-    Reading
-        As of :func:`read_direction`.
+    The more of all change is across the grain, the more the reader believes it. ``grain`` is that
+    of :func:`vizlight.observers.lines.along_grain`, ``angle`` the true directions in degrees, from
+    right toward up; the rest is as for :func:`read_direction`.
     """
     candidates = np.exp(-2j * np.radians(start + np.arange(ANGLES)))
     return _angles(BELIEF * np.outer(grain, candidates).real, angle, start)
@@ -355,24 +308,10 @@ def read_heading(
 ) -> list[Reading]:
     """Return the answers of readers who know the course of lines and a key of all directions.
 
-    Edges that are smoothed, and halos, leave less light of lines than the key has.
-
-    Parameters
-    ----------
-    sample : Sample
-        Places with one tangent each, which has a length in the picture.
-    middle : ndarray, shape (3,)
-        Place of the key.
-    colors : Colors
-        Colours of the places.
-    shares : sequence of float
-        Share of the light of the key that each reader expects of all lines.
-
-    Returns
-    -------
-    list of Reading
-        For each share, angles in degrees, from 0 to 90, between the tangents and the likeliest of
-        180 directions in space that have their course in the picture.
+    Edges that are smoothed, and halos, leave less light of lines than the key has. Each reader
+    expects one of the ``shares`` of the light of the key of all lines. Errors are angles in
+    degrees, from 0 to 90, between the tangents, which have a length in the picture, and the
+    likeliest of 180 directions in space that have their course in it.
     """
     ways = _ways()
     place = _nearest(sample, middle, len(ways))
@@ -387,17 +326,8 @@ def read_axes(sample: Sample, middle: Array, colors: Colors) -> Reading:
     """Return the answers of a reader who knows the course of lines, and hues of the axes.
 
     A hue is that of up to four directions. Lightness and chroma tell nothing, since light and the
-    ground between lines, dark or white, are mixed with the hues.
-
-    Parameters
-    ----------
-    sample, middle, colors
-        As for :func:`read_heading`.
-
-    Returns
-    -------
-    Reading
-        As of :func:`read_heading`.
+    ground between lines, dark or white, are mixed with the hues. Arguments and errors are those of
+    :func:`read_heading`.
     """
     place = _nearest(sample, middle, 1)
     axes = np.stack([place.right[0], place.up[0], place.eye[0]])
@@ -445,25 +375,10 @@ def read_normal(sample: Sample, middle: Array, colors: Colors, phase: float) -> 
     """Return the answers of a reader who matches colours with a ball.
 
     The candidates are even on the disc that a ball shows, so that each is as likely as it is large
-    in a picture of all normals. Tangents, if any, may have any direction.
-
-    Parameters
-    ----------
-    sample : Sample
-        Places with normals.
-    middle : ndarray, shape (3,)
-        Place of the ball.
-    colors : Colors
-        Colours of the places.
-    phase : float
-        Angle in radians by which the candidates are turned.
-
-    Returns
-    -------
-    Reading
-        Angles in degrees between the side of the surface that is seen and the mean of the
-        candidates by their probability: the likeliest one would be worse than no look at the
-        picture where the colour tells little.
+    in a picture of all normals. Tangents, if any, may have any direction. They are turned by the
+    ``phase`` in radians. Errors are angles in degrees between the side of the surface that is seen
+    and the mean of the candidates by their probability: the likeliest one would be worse than no
+    look at the picture where the colour tells little.
     """
     assert sample.normals is not None
     count, turns = ALONE if sample.tangents is None else WITH_TANGENTS
@@ -518,22 +433,9 @@ def _ball(places: Sample, normals: Array, tangents: Array) -> Array:
 def read_value(colors: Colors, positions: Array, table: pv.LookupTable, *, lit: bool) -> Reading:
     """Return the answers of a reader who looks colours up on a bar.
 
-    Parameters
-    ----------
-    colors : Colors
-        Colours of M places.
-    positions : ndarray, shape (M,)
-        Places of the values on the bar, from 0 to 1; less than 0 where they are below the bar, in
-        a colour of their own.
-    table : pyvista.LookupTable
-        Colours of the bar.
-    lit : bool
-        Whether the reader takes colours for those of the bar in some light, from 0.3 to 1 of it.
-
-    Returns
-    -------
-    Reading
-        Distances on the bar, as shares of its length.
+    Positions of the values on the bar are from 0 to 1, less than 0 where they are below the bar, in
+    a colour of their own; if ``lit``, the reader takes colours for those of the bar in some light,
+    from 0.3 to 1 of it. Errors are distances on the bar, as shares of its length.
     """
     logarithms, count, first = _on_bar(colors, table, lit=lit)
     # What is below the bar is one step below it.

@@ -60,28 +60,11 @@ WHOLE = 1 << 17
 class Sample(Columns):
     """Some places of a picture on one mesh: where they are, and their data.
 
-    Attributes
-    ----------
-    kind : {"surface", "line", "point"}
-        Kind of the mesh.
-    points : ndarray, shape (M, 3)
-        Places.
-    eye, right, up : ndarray, shape (M, 3)
-        Unit directions toward the eye, to the right and up in the picture.
-    tangents : ndarray, shape (M, k, 3), or None
-        Orthonormal tangents.
-    normals : ndarray, shape (M, 3), or None
-        Unit normals as they are lit.
-    values : ndarray, shape (M,), or None
-        Values that colours show.
-    valid : ndarray of bool, shape (M,)
-        Whether tangents and normals have a direction.
-    scene : Scene
-        Scene with a view, and with both ends of its depth cue.
-    options : ShadingOptions
-        How light is computed.
-    magnitude : ndarray, shape (M,), or None
-        Length of a single tangent before it became a unit vector.
+    ``kind`` is "surface", "line" or "point"; ``eye``, ``right`` and ``up`` are unit directions
+    toward the eye, to the right and up in the picture. Tangents (M, k, 3) are orthonormal, normals
+    unit vectors as they are lit, ``valid`` where these have a direction; ``values`` are those that
+    colours show, and ``magnitude`` is the length of a single tangent before it became a unit
+    vector. The scene has a view, and both ends of its depth cue.
     """
 
     kind: Kind
@@ -124,17 +107,7 @@ class Sample(Columns):
 
 
 def sample(part: SeenMesh, pixels: Pixels, camera: pv.Camera) -> Sample:
-    """Return places of a picture with the data that are interpolated at them.
-
-    Parameters
-    ----------
-    part : SeenMesh
-        Mesh.
-    pixels : Pixels
-        Pixels that show the mesh.
-    camera : pyvista.Camera
-        Camera of the picture.
-    """
+    """Return places of a picture with the data that are interpolated at them."""
     names, cell = np.unique(pixels.cell, return_inverse=True)
     whole, part = part, part.near(names)
     cells = part.cells[cell]
@@ -205,48 +178,17 @@ def _normals(part: SeenMesh, ids: Indices, places: Places, points: Array) -> Arr
 class SeenMesh:
     """One mesh of the picture.
 
-    Attributes
-    ----------
-    kind : {"surface", "line", "point"}
-        Kind of its cells.
-    mesh : pyvista.DataSet
-        Mesh.
-    cells : ndarray of int or DrawnCells, shape (C, s)
-        Triangles, segments or points.
-    inputs : ShadingInputs
-        Points, tangents and normals. A lit surface has normals also where its light does not depend
-        on them: a reader sees them as its shape. Of a large surface and of many lines the points
-        alone.
-    options : ShadingOptions
-        How the mesh is lit.
-    scene : Scene
-        Scene with a view: the colours of the picture mean its light.
-    lit : bool
-        Whether the colours of the picture mean light.
-    light : LightOptions
-        How the mesh is lit, by the names of its arrays.
-    path : str
-        Name of the mesh among others, for errors.
-    values : ndarray, shape (N,), or None
-        Values of the points that colours show; of the cells if they are flat.
-    flat : bool
-        Whether each cell has one colour.
-    table : pyvista.LookupTable or None
-        Colours of the values.
-    width : float
-        Width of lines or points in pixels, the least width of lines that have a diameter.
-    diameter : float or None
-        Diameter of lines in the unit of the mesh.
-    shares : ndarray, shape (N,), or None
-        Shares of the width that lines have at their points; None for lines of one width.
-    glyph : ndarray of int, shape (C,), or None
-        Numbers of the glyphs that cells belong to; None where they are no glyphs.
-    by_axes : bool
-        Whether the hues of lines are those of the axes along which they run.
-    large : bool
-        Whether tangents and normals are made near the places that are read.
-    matrix : ndarray, shape (4, 4), or None
-        Place of a mesh that is not moved as a whole.
+    ``kind`` is "surface", "line" or "point", and ``cells`` (C, s) are triangles, segments or
+    points. A lit surface has normals also where its light does not depend on them: a reader sees
+    them as its shape; of a large surface and of many lines ``inputs`` are the points alone, as
+    tangents and normals are made near the places that are read. ``lit`` says that the colours of
+    the picture mean light, that of the ``scene``, which has a view. ``values`` that colours of the
+    ``table`` show are of the points, or of the cells if ``flat``: each cell has one colour.
+    ``width`` is in pixels, the least one of lines that have a ``diameter`` in the unit of the mesh,
+    and ``shares`` of it are those that lines have at their points, None for one width. ``glyph`` is
+    the number of the glyph that a cell belongs to; with ``by_axes`` hues of lines are those of the
+    axes along which they run. ``matrix`` is the place of a mesh that is not moved as a whole, and
+    ``path`` its name for errors.
     """
 
     kind: Kind
@@ -438,29 +380,8 @@ def part_on(
 ) -> SeenMesh:
     """Return the part that the meter needs of a mesh in the light of a scene.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh with points.
-    scene : Scene
-        Scene with a view.
-    options : LightOptions
-        How the mesh is lit.
-    path : str, optional
-        Name of the mesh among others, for errors.
-    values : ndarray, optional
-        Values that colours show, one for each point, or for each cell if they are ``flat``.
-    flat : bool, default: False
-        Whether each cell has one colour.
-    matrix : ndarray, shape (4, 4), optional
-        Place of the mesh.
-    **more
-        Further attributes of the part.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an array is missing or does not fit, as for :func:`vizlight.illuminate`.
+    ``path`` is its name among others, for errors, ``values`` are of each point, or of each cell if
+    they are ``flat``, ``matrix`` is the place of the mesh, and ``more`` are further attributes.
     """
     options, is_glyphs = of_glyphs(mesh, options), GLYPH in mesh.point_data
     if is_glyphs:
@@ -549,14 +470,7 @@ def moved(
 ) -> tuple[pv.DataSet, LightOptions]:
     """Return a mesh, and the options of its light, where an actor has placed it.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh; it is not changed.
-    options : LightOptions
-        How the mesh is lit: tangents move with it, and normals stay across its surface.
-    matrix : ndarray, shape (4, 4), or None
-        Matrix of the actor.
+    Tangents move with it, and normals stay across its surface.
     """
     options = of_glyphs(mesh, options)
     if matrix is None:
@@ -630,13 +544,7 @@ def _glyphs(mesh: pv.DataSet, cells: Indices | DrawnCells | DrawnPoints) -> Indi
 def camera_of(
     mesh: pv.DataSet | pv.MultiBlock, scene: Scene | None, view: AnyView, aspect: float
 ) -> pv.Camera:
-    """Return the camera of a picture of some width over height.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the view does not fit, or scene or view are not in 3-space.
-    """
+    """Return the camera of a picture of some width over height."""
     eye = as_view(view) or (None if scene is None else scene.view)
     spaces = ("scene", scene), ("view", None if eye is None else Scene(view=eye))
     for name, space in spaces:
@@ -687,17 +595,9 @@ def rays(camera: pv.Camera, at: Array) -> tuple[Array, Array]:
 def weights(corners: Array, origin: Array, way: Array) -> Array:
     """Return where lines of sight meet cells, as the share of each corner.
 
-    Parameters
-    ----------
-    corners : ndarray, shape (M, s, 3)
-        Corners of a triangle, a segment or a point for each line of sight.
-    origin, way : ndarray, shape (M, 3)
-        Lines of sight, as :func:`rays` returns them.
-
-    Returns
-    -------
-    ndarray, shape (M, s)
-        Shares, 0 or more and with sum 1; for a segment, of its point nearest to the line.
+    Lines of sight are those of :func:`rays`, ``corners`` (M, s, 3) are of a triangle, a segment or
+    a point for each. Shares (M, s) are 0 or more with sum 1; for a segment, of its point nearest to
+    the line.
     """
     m, s, _ = corners.shape
     if s == 1:

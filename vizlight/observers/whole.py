@@ -53,14 +53,7 @@ HIDES = 0.5
 class Shown(NamedTuple):
     """Picture of a renderer.
 
-    Attributes
-    ----------
-    parts : list of SeenMesh
-        Meshes that can be read.
-    occluders : list of vtkActor
-        Actors that hide them.
-    notes : list of str
-        Data that are not read.
+    ``parts`` can be read, ``occluders`` hide them, and ``notes`` are on data that are not read.
     """
 
     parts: list[SeenMesh]
@@ -82,19 +75,8 @@ def legibility_of(
 ) -> Legibility:
     """Return how much a reader can read back from the whole picture of a plotter.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        Plotter; the renderer that is active is read.
-    live_of : callable
-        Function from an actor to its light of vizlight, or None.
-    size_mm, distance_mm, screen, noise, samples, seed
-        As for :func:`vizlight.legibility`.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an option does not fit, or nothing that can be read is visible.
+    The renderer that is active is read; ``live_of`` takes an actor to its light of vizlight, or
+    None, and options are as for :func:`vizlight.legibility`.
     """
     if not plotter.camera_set:
         plotter.renderer.view_isometric(render=False)
@@ -336,11 +318,6 @@ def read_picture(picture: object) -> Array:
     """Return a picture from an array or a file as sRGB values, shape (H, W, 3) from 0 to 1.
 
     Values beyond that by ``BEYOND`` at most, such as by rounding, are taken for 0 and 1.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is no picture in colours.
     """
     if isinstance(picture, np.ndarray):
         array: Foreign = picture

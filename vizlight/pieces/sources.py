@@ -60,18 +60,8 @@ def _wrong(expected: str, got: str, remedy: str = "") -> PieceError:
 class FilePiece:
     """A file, or one partition of a VTKHDF file, of cells in any order.
 
-    It is small enough to be sent to another process, which reads the file.
-
-    Attributes
-    ----------
-    name : str
-        Name in messages.
-    path : pathlib.Path
-        Path of the file.
-    partition, partitions : int
-        Index of the partition, and their number.
-    beside : tuple of FilePiece
-        Pieces with bounding boxes that touch this one's.
+    It is small enough to be sent to another process, which reads the file. ``beside`` are pieces
+    with bounding boxes that touch this one's.
     """
 
     name: str
@@ -117,14 +107,8 @@ class FilePiece:
 class GridPiece:
     """A box of nodes of a structured grid.
 
-    Attributes
-    ----------
-    name : str
-        Name in messages.
-    source : pathlib.Path or Slabs
-        Source of the nodes.
-    extent, whole : tuple of 6 int
-        First and last node of the piece and of the grid, along x, y and z.
+    ``extent`` and ``whole`` are the first and last node of the piece and of the grid, along x, y
+    and z.
     """
 
     name: str
@@ -284,17 +268,8 @@ def _unmapped(array: Foreign) -> Foreign:
 def pieces_of(sources: object, slab: float) -> list[Piece]:
     """Return the pieces of files, indices, folders of patterns, and arrays.
 
-    Parameters
-    ----------
-    sources : path, Slabs or sequence of them
-        Files; patterns such as ``"run/*.vtu"``; indices; grids.
-    slab : float
-        Largest size in MB of a slab of a structured grid.
-
-    Raises
-    ------
-    TypeError, PieceError
-        If a source is of no known kind, or a file is missing.
+    Sources are files, patterns such as ``"run/*.vtu"``, indices, or grids; ``slab`` is the largest
+    size in MB of a slab of a structured grid.
     """
     items = [sources] if isinstance(sources, str | Path | Slabs) else sources
     wrong = isinstance(items, Mapping | pv.DataSet | pv.MultiBlock)
@@ -412,13 +387,7 @@ def _parts(first: int, last: int, most: int) -> list[tuple[int, int]]:
 
 
 def index_files(path: Path) -> list[Path]:
-    """Return the files that an index names.
-
-    Raises
-    ------
-    PieceError
-        If the index cannot be read, or a file is missing.
-    """
+    """Return the files that an index names."""
     try:
         root = ET.parse(path).getroot()
     except (ET.ParseError, OSError) as error:

@@ -69,31 +69,13 @@ class Job:
 class PieceSummary:
     """Summary of a piece, as it is read or as it was lit.
 
-    Attributes
-    ----------
-    points, cells : int
-        Numbers of both.
-    bounds : tuple of 6 float
-        Bounding box; empty without points.
-    arrays : dict of str to str
-        Type and number of components of each array, by "point NAME" and "cell NAME", of the
-        points, and of the mesh.
-    ranges : dict of str to (float, float)
-        Smallest and largest finite value of point arrays.
-    normals : str
-        Name of the active normals of the points, if any.
-    lines : bool
-        Whether it has lines and no faces.
-    extent, grid
-        First and last node of a structured grid, and the place of an image.
-    file : str
-        Name of the file that was written, if any point remains.
-    invalid : int
-        Number of points that could not be lit.
-    sharp : float or None
-        Share of sharp edges, where that is known.
-    notes : list of str
-        Texts of warnings.
+    ``arrays`` has the type and number of components of each array, by "point NAME" and "cell NAME",
+    of the points, and of the mesh; ``ranges`` the smallest and largest finite value of point
+    arrays. ``normals`` is the name of the active ones; with ``lines`` it has lines and no faces.
+    ``extent`` and ``grid`` are the first and last node of a structured grid, and the place of an
+    image. ``file`` is the one that was written, if any point remains; ``invalid`` is the number of
+    points that could not be lit, ``sharp`` the share of sharp edges, where that is known, and
+    ``notes`` are texts of warnings.
     """
 
     points: int = 0
@@ -112,13 +94,7 @@ class PieceSummary:
 
 
 def survey(piece: Piece, contour: str | None) -> PieceSummary:
-    """Return the summary of a piece, with the range of one array.
-
-    Raises
-    ------
-    PieceError
-        If it cannot be read.
-    """
+    """Return the summary of a piece, with the range of one array."""
     return _described(_read(piece, 0), [contour])
 
 
@@ -249,11 +225,6 @@ def light(piece: Piece, job: Job, target: Path, whole_sides: Vote | None = None)
     """Light a piece, with sides that the whole may have decided, and write it to a path.
 
     The path has no suffix.
-
-    Raises
-    ------
-    PieceError
-        If the piece cannot be read, lit or written.
     """
     kept = _kept(piece, target, whole_sides)
     mesh, known = kept or (_target(piece, job, job.ghost), None)

@@ -31,19 +31,8 @@ LOST = 3
 class RetryingMap:
     """A map of functions over pieces that repeats calls after errors of the system.
 
-    Parameters
-    ----------
-    map : callable or object
-        ``map``, or an object with such a method; its results may be futures.
-    retries : int
-        Number of times that a call is repeated after an error of the operating system.
-    show : bool
-        Whether progress is shown.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the map is neither a function nor has a method ``map``, or the number is negative.
+    ``map`` is a function, or an object with such a method; its results may be futures. A call is
+    repeated at most ``retries`` times.
     """
 
     def __init__(self, map: Map, retries: int, show: bool) -> None:
@@ -143,15 +132,7 @@ class Processes:
         self.count = _check.integer("count", count, low=1)
 
     def __call__(self, function: Callable[[Foreign], T], calls: Iterable[Foreign]) -> Iterator[T]:
-        """Yield the results of calls in their order.
-
-        Parameters
-        ----------
-        function : callable
-            Function that can be pickled.
-        calls : iterable
-            Argument of each call.
-        """
+        """Yield the results of calls in their order. The function can be pickled."""
         left, lost = list(calls), 0
         while left:
             try:

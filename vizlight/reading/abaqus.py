@@ -119,17 +119,7 @@ class _Model:
 
 
 def read(path: Path) -> pv.MultiBlock:
-    """Return the parts of a file, each as a block.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Raises
-    ------
-    ValueError
-        If a line cannot be read, or an included file is missing.
-    """
+    """Return the parts of a file, each as a block."""
     model = _Model(path)
     keyword, parameters, rows = "", dict[str, str](), list[list[str]]()
     for line in _lines(path, path.parent, 0):

@@ -68,22 +68,14 @@ NO_SURFACE = "values over a surface, without one: read the surface, and pass thi
 
 
 def is_freesurfer(path: Path) -> bool:
-    """Return whether a file begins like FreeSurfer's surfaces and arrays.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-    """
+    """Return whether a file begins like FreeSurfer's surfaces and arrays."""
     return file_parts.first_bytes(path, 3) in _FREESURFER
 
 
 def word_and_unit(name: str) -> tuple[str, str]:
     """Return the word and the unit of an array that FreeSurfer makes, empty for others.
 
-    Parameters
-    ----------
-    name : str
-        Name of the array, with the side or without, such as lh.curv.
+    The name is with the side or without, such as lh.curv.
     """
     words = [word for word in re.split(r"[\W_]+", name.lower()) if not _SIDE.fullmatch(word)]
     return MEASURES.get(words[0], ("", "")) if len(words) == 1 else ("", "")
@@ -95,11 +87,6 @@ def hemisphere(surface: pv.DataSet) -> str:
     It is known by the name of an array that FreeSurfer makes, with its side, such as lh.curv; else
     by its size in mm, the side of the middle on which it lies, x to the right, a surface without
     handles, and the number of its points or the name of an array.
-
-    Parameters
-    ----------
-    surface : pyvista.DataSet
-        Surface.
     """
     if not isinstance(surface, pv.PolyData) or surface.n_cells != 2 * surface.n_points - 4:
         return ""
@@ -119,12 +106,7 @@ def hemisphere(surface: pv.DataSet) -> str:
 
 
 def is_pair(path: Path) -> bool:
-    """Return whether a file is one of the two of Analyze or NIfTI, of a header and its image.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-    """
+    """Return whether a file is one of the two of Analyze or NIfTI, of a header and its image."""
     header = path.with_suffix(".hdr")
     if path.suffix.lower() not in (".hdr", ".img") or not header.is_file():
         return False
@@ -133,17 +115,7 @@ def is_pair(path: Path) -> bool:
 
 
 def read(path: Path) -> pv.PolyData:
-    """Return the surface of a file, with the arrays of its points.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Raises
-    ------
-    ValueError
-        If it has arrays alone.
-    """
+    """Return the surface of a file, with the arrays of its points."""
     import nibabel
 
     name = path.name.lower()
@@ -187,19 +159,9 @@ def _shift(centre: Sequence[float]) -> list[str]:
 def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     """Return a volume by nibabel in its frame: RAS, in millimetres, by the affine of its header.
 
-    Of a file of several steps, such as a functional image, one is loaded.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of a file of NIfTI, FreeSurfer (.mgz), AFNI (.head) or MINC (.mnc).
-    time : float, int or str, optional
-        Time of the step, as for :func:`.series.chosen`.
-
-    Raises
-    ------
-    ValueError
-        If it has no numbers on a grid of three axes.
+    Of a file of several steps, such as a functional image, one is loaded. The file is one of NIfTI,
+    FreeSurfer (.mgz), AFNI (.head) or MINC (.mnc); ``time`` is that of the step, as for
+    :func:`.series.chosen`.
     """
     import nibabel
 
@@ -248,14 +210,8 @@ def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
 def turned(rows: AnyArray, affine: AnyArray, name: str) -> pv.ImageData | pv.StructuredGrid:
     """Return a grid of values, with axes that run backward turned over, and put in order.
 
-    Parameters
-    ----------
-    rows : ndarray, shape (I, J, K) or (I, J, K, C)
-        Values in the order of a file.
-    affine : ndarray, shape (4, 4)
-        Matrix that takes i, j, k to places, which stay.
-    name : str
-        Name of the array of the grid.
+    ``rows``, (I, J, K) or (I, J, K, C), are in the order of a file; ``affine`` takes i, j, k to
+    places, which stay.
     """
     order, signs = _axes_of(affine)
     rows = np.transpose(rows, (*order, *range(3, rows.ndim)))
@@ -291,13 +247,8 @@ def _axes_of(affine: AnyArray) -> tuple[AnyArray, AnyArray]:
 def mark_as_body(grid: pv.DataSet, word: str, affine: AnyArray) -> None:
     """Say of a grid that its axes are those of a body, in mm.
 
-    Parameters
-    ----------
-    grid : pyvista.DataSet
-    word : str
-        Name of the part of the header that says so.
-    affine : ndarray, shape (4, 4)
-        Matrix by which the file stores it.
+    ``word`` is the part of the header that says so, ``affine`` the matrix by which the file stores
+    it.
     """
     grid.field_data[UNIT] = ["millimetre"]
     said = meaning.of(grid)
@@ -339,17 +290,6 @@ def overlay(path: Path, surface: pv.DataSet) -> tuple[dict[str, AnyArray], meani
     """Return the arrays of a file for the points of a surface, by the name of the file.
 
     The meaning has the names and colours of regions, as .annot, GIFTI and CIFTI have them.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-    surface : pyvista.DataSet
-        Surface, which is not changed.
-
-    Raises
-    ------
-    ValueError
-        If the arrays have another length, with both numbers, or are of another part of the brain.
     """
     import nibabel
 
@@ -468,13 +408,7 @@ def _transform(part: Foreign) -> list[str]:
 
 
 def _mz3(path: Path) -> dict[str, AnyArray]:
-    """Return the parts of a .mz3 file. No package for Python reads it.
-
-    Raises
-    ------
-    ValueError
-        If it is no such file, or shorter than it states.
-    """
+    """Return the parts of a .mz3 file. No package for Python reads it."""
     data = path.read_bytes()
     # Most are packed by gzip, and their names do not say so.
     if not data.startswith(_MAGIC):
@@ -508,10 +442,6 @@ def tracks_of_tt(path: Path) -> tuple[AnyArray, AnyArray, AnyArray]:
     The file is one of MATLAB 4; a tract is its number of coordinates, its first point in 32nds of
     a voxel, and steps of a byte for each further coordinate. Points are in mm, by ``trans_to_mni``
     if the file has it.
-
-    Parameters
-    ----------
-    path : pathlib.Path
     """
     from scipy.io import loadmat
 

@@ -132,18 +132,9 @@ _RowsOf: TypeAlias = "Mapping[str, tuple[pv.DataSetAttributes, Callable[[Raw], R
 class _Axis:
     """One axis of a grid.
 
-    Attributes
-    ----------
-    ticks : ndarray, shape (N,)
-        Coordinates, rising.
-    order : ndarray of int, shape (N,)
-        Indices along the dimension of these.
-    words : str
-        Words for the meaning.
-    kind : {"degrees", "rotated", "length", "angle", "time", "index", ""}
-        Kind of its unit; an angle is one of a scan, which is no place.
-    scale : AxisScale
-        Numbers along it, in the unit in which they are read.
+    ``ticks`` rise, at the indices ``order`` along the dimension; ``kind`` is that of the unit,
+    "degrees", "rotated", "length", "angle" (of a scan, which is no place), "time", "index" or
+    empty. ``scale`` has the numbers in the unit in which they are read.
     """
 
     ticks: Array
@@ -187,12 +178,7 @@ def _is_plain_z(name: str, attributes: Mapping[str, str]) -> bool:
 
 
 def is_grid(value: object) -> bool:
-    """Return whether a value is a Dataset or a DataArray of xarray.
-
-    Parameters
-    ----------
-    value : object
-    """
+    """Return whether a value is a Dataset or a DataArray of xarray."""
     return type(value).__module__.startswith("xarray.") and hasattr(value, "coords")
 
 
@@ -201,12 +187,7 @@ def read(
 ) -> pv.DataSet:
     """Return the variables of a file of netCDF, GRIB or Zarr on the grid of its largest variable.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file.
-    time, at, nodata
-        As for :func:`of_dataset`.
+    Arguments are as for :func:`of_dataset`.
     """
     import xarray
 
@@ -287,34 +268,15 @@ def of_dataset(
     """Return the variables of a dataset of xarray on the grid of its largest variable.
 
     East, north and up are those of CF's attributes, else of usual names, else of the order of the
-    axes, of which the last is x. Of any axis beside these and the time one value is taken.
+    axes, of which the last is x. Of any axis beside these and the time one value is taken. ``at``
+    has this value or its index by the name of the axis; a number within the values of the axis is
+    the nearest of them, and the first is the default. ``time`` is as for :func:`.series.chosen`,
+    ``nodata`` as for :func:`.fills.without_missing`.
 
-    Parameters
-    ----------
-    data : xarray.Dataset or xarray.DataArray
-        Data, of which one step is loaded.
-    time : float, int or str, optional
-        Time of a step, as for :func:`.series.chosen`.
-    at : dict, optional
-        Value or index along any other axis, by its name; a number within the values of the axis is
-        the nearest of them. Default: the first.
-    nodata : float, optional
-        Value that stands for none, as for :func:`.fills.without_missing`.
-    source : str
-        Name of the data in a warning.
-
-    Returns
-    -------
-    pyvista.DataSet
-        Image, rectilinear grid where steps are unequal, structured grid where each point has a
-        longitude and a latitude of its own, or unstructured one where some have none. Faces of a
-        mesh, of cells with bounds and of a grid around a pole are a surface; values in a list
-        without cells are points.
-
-    Raises
-    ------
-    ValueError
-        If there is no variable on a grid, or the coordinates along an axis repeat.
+    The grid is an image, a rectilinear grid where steps are unequal, a structured one where each
+    point has a longitude and a latitude of its own, or an unstructured one where some have none.
+    Faces of a mesh, of cells with bounds and of a grid around a pole are a surface; values in a
+    list without cells are points.
     """
     if not hasattr(data, "data_vars"):
         data = data.to_dataset(name=data.name or "values")
@@ -324,13 +286,7 @@ def of_dataset(
 
 
 class Steps:
-    """Reader of the steps of a netCDF file, one at a time.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file.
-    """
+    """Reader of the steps of a netCDF file, one at a time."""
 
     def __init__(self, path: Path) -> None:
         self._path, self._time = path, 0.0
@@ -349,18 +305,7 @@ class Steps:
 def add(mesh: pv.DataSet, other: Foreign, path: Path) -> None:
     """Add the arrays of a grid of the same points to a mesh, with their meaning.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-    other : pyvista.DataSet
-        The other grid.
-    path : pathlib.Path
-        Its file, for the message.
-
-    Raises
-    ------
-    ValueError
-        If the points are others.
+    The path is that of the other file, for the message of points that differ.
     """
     same = mesh.n_points == other.n_points
     if not same or not np.allclose(mesh.points, other.points, rtol=1e-5, atol=0):

@@ -24,11 +24,9 @@ ENDS, SAMPLE = (2, 98), 100_000
 def colors_among(kinds: Mapping[str, tuple[str, str]]) -> list[str]:
     """Return the names of the bands that are red, green and blue, none where no three are.
 
-    Parameters
-    ----------
-    kinds : mapping of str to (str, str)
-        Interpretation of each band by its file, such as ``"red"``, ``"gray"`` or ``"undefined"``,
-        and its type, by its name; this is ``band_1`` and so on where the file has none.
+    ``kinds`` has the interpretation of each band by its file, such as ``"red"``, ``"gray"`` or
+    ``"undefined"``, and its type, by its name; this is ``band_1`` and so on where the file has
+    none.
     """
     by_file = {kind: name for name, (kind, _) in kinds.items()}
     if by_file.keys() >= {*_COLORS}:
@@ -50,18 +48,9 @@ def colors_among(kinds: Mapping[str, tuple[str, str]]) -> list[str]:
 def composite(bands: Sequence[Raw], *, as_stored: bool) -> Raw:
     """Return the colours of three bands as bytes, grey where all of them are missing.
 
-    Parameters
-    ----------
-    bands : sequence of ndarray, shape (rows, columns)
-        Red, green and blue, NaN where they are missing.
-    as_stored : bool
-        Whether they are bytes of a picture, which are taken as they are. Others run from the 2nd
-        to the 98th percentile of all three, which keeps hues, without the pixels at which all are
-        0, which lie outside of a satellite's swath.
-
-    Returns
-    -------
-    ndarray of uint8, shape (rows, columns, 3)
+    ``as_stored`` takes bytes of a picture as they are. Other bands, NaN where they are missing, run
+    from the 2nd to the 98th percentile of all three, which keeps hues, without the pixels at which
+    all are 0, which lie outside of a satellite's swath.
     """
     stack: Array = np.stack([band.astype(np.float64) for band in bands], axis=-1)
     # Where 0 is missing, a dark pixel may lack one of them.

@@ -28,11 +28,6 @@ def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     """Return the values of a cube file at their places in angstroms, its atoms as field arrays.
 
     VTK's reader loses origin and spacing. Orbitals are arrays of their numbers.
-
-    Raises
-    ------
-    ValueError
-        If a number is missing.
     """
     with path.open(encoding="latin-1") as file:
         head = [file.readline() for _ in range(6)]
@@ -90,13 +85,7 @@ _ITEMS = re.compile(r"\srank\s+\d+(?:\s+shape\s+(\d+))?\s+items\s+(\d+)\s+(data\
 
 
 def read_dx(path: Path) -> pv.ImageData | pv.StructuredGrid:
-    """Return the values of an OpenDX file with one regular grid, such as an electric potential.
-
-    Raises
-    ------
-    ValueError
-        If it has no regular grid in space with values in text, or a number is missing.
-    """
+    """Return the values of an OpenDX file with one regular grid, such as an electric potential."""
     text = _COMMENTS.sub("", path.read_text(encoding="latin-1"))
     counts, origin, deltas = _COUNTS.search(text), _ORIGIN.search(text), _DELTA.findall(text)
     items = _ITEMS.search(text)

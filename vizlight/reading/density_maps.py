@@ -23,20 +23,8 @@ _FIRST, _NODES, _PLACE = (5, 6, 7), (8, 9, 10), (50, 51, 52)
 def read(path: Path) -> pv.ImageData | pv.StructuredGrid:
     """Return the densities of a map at their places, in the unit of the file, mostly angstrom.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file, which gemmi reads.
-
-    Returns
-    -------
-    pyvista.ImageData or pyvista.StructuredGrid
-        Grid with ``density``; it is structured where the edges of the cell are not at right angles.
-
-    Raises
-    ------
-    ValueError
-        If it is no map, or too short.
+    gemmi reads the file; the grid is structured where the edges of the cell are not at right
+    angles.
     """
     import gemmi
 

@@ -39,17 +39,8 @@ _PARTS, _OPEN = 0xFFFE, 0xFFFFFFFF
 def read(path: Path) -> pv.DataSet:
     """Return the image of a file, in mm from its lower left corner if its header has their size.
 
-    Values of computed tomography are in Hounsfield units, unless the header has another unit.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file; of several frames the first is read, with a note.
-
-    Raises
-    ------
-    ValueError
-        If its values are packed.
+    Values of computed tomography are in Hounsfield units, unless the header has another unit. Of
+    several frames the first is read, with a note; packed values are refused.
     """
     header: dict[tuple[int, int], str] = {}
     for tag, value in _elements(file_parts.first_bytes(path, _HEAD)):

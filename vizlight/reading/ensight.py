@@ -52,13 +52,7 @@ _DIGITS = np.isin(np.arange(256), np.frombuffer(b"0123456789+-.eEdD \t\r\nnaifNA
 
 
 def missing_part(file: BinaryIO) -> str:
-    """Return the reason why a case is refused, or "".
-
-    Parameters
-    ----------
-    file : file
-        The case, which is open.
-    """
+    """Return the reason why a case is refused, or ""."""
     folder, section, sections = Path(file.name).parent, b"", set[bytes]()
     form, named = list[bytes](), list[_Entry]()
     for text in file.read().splitlines():
@@ -87,13 +81,7 @@ def missing_part(file: BinaryIO) -> str:
 
 
 def size(file: BinaryIO) -> int:
-    """Return the number of bytes of a case and of the files that it names, of their last step.
-
-    Parameters
-    ----------
-    file : file
-        The case, which is open.
-    """
+    """Return the number of bytes of a case and of the files that it names, of their last step."""
     file.seek(0)
     data, folder = file.read(), Path(file.name).parent
     paths = {_of_last_step(folder, os.fsdecode(word)) for word in data.split() if b"\0" not in word}

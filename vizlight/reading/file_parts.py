@@ -23,15 +23,7 @@ _END = 512
 
 
 def warn_of_last_line(path: Path, data: bytes) -> None:
-    """Warn of a text without a line break at its end, which may be cut in its last number.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file.
-    data : bytes
-        Its content.
-    """
+    """Warn of a text without a line break at its end, which may be cut in its last number."""
     if not data.endswith((b"\n", b"\r", b"End")):
         _check.warn(f"file: '{path}' may be cut in its last line, which has no line break")
 
@@ -39,31 +31,14 @@ def warn_of_last_line(path: Path, data: bytes) -> None:
 def warn_of_more(path: Path, count: int, unit: str) -> None:
     """Warn of a part of a file beyond the size that it states, if there is one.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file.
-    count : int
-        Number of lines, numbers or bytes.
-    unit : str
-        Word for them.
+    ``unit`` is the word for the lines, numbers or bytes counted.
     """
     if count > 0:
         _check.warn(f"file: '{path}' has {count} {unit} more than it states, which are left out")
 
 
 def warn_of_less(path: Path, count: int, stated: int, unit: str) -> None:
-    """Warn where a file gives less than it states.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file.
-    count, stated : int
-        Number of parts that are read, and that of the file.
-    unit : str
-        Word for them.
-    """
+    """Warn where a file gives less than it states. ``unit`` is the word for the parts counted."""
     if count < stated:
         _check.warn(f"file: '{path}' gives {count} of the {stated} {unit} that it states")
 

@@ -76,17 +76,10 @@ Mesh = pv.DataSet | pv.MultiBlock
 class Format(NamedTuple):
     """A format of files.
 
-    Attributes
-    ----------
-    suffixes : tuple of str
-        Ends of the names of its files.
-    read : callable, optional
-        Returns the mesh of a file, None where it is left to PyVista.
-    missing_part : callable, optional
-        Returns the part that an open file lacks of the size or the end that it states, or "":
-        faults that its reader overlooks, ends the process by, or never ends on.
-    package : str
-        Package that reads it.
+    ``suffixes`` are ends of names, ``read`` is None where a file is left to PyVista, and
+    ``package`` reads it. ``missing_part`` returns the part that an open file lacks of the size or
+    the end that it states, or "": faults that its reader overlooks, ends the process by, or never
+    ends on.
     """
 
     suffixes: tuple[str, ...]
@@ -221,15 +214,7 @@ def of(path: Path) -> Format:
 def missing_part(path: Path, /) -> str:
     """Return the part that a file lacks of the size or the end that it states.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file.
-
-    Returns
-    -------
-    str
-        Reason why the file cannot be whole; empty if it may be, or is of another format.
+    It is the reason why the file cannot be whole, empty if it may be, or is of another format.
     """
     check = of(path).missing_part
     if check is None:

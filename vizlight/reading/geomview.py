@@ -31,17 +31,7 @@ def is_mesh(path: Path) -> bool:
 
 
 def read_off(path: Path) -> pv.PolyData:
-    """Return the surface of an OFF file, with places in 4-space as the array ``position``.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Raises
-    ------
-    ValueError
-        If it is no such file, a binary one, or it is not whole.
-    """
+    """Return the surface of an OFF file, with places in 4-space as the array ``position``."""
     data = path.read_bytes()
     start = _OFF.match(data)
     textured, coloured, normal, four, n = start.groups() if start else (None,) * 5
@@ -88,13 +78,7 @@ def _of_sizes(corners: Indices, sizes: Indices, chosen: Bools) -> pv.CellArray:
 
 
 def _broken(words: list[bytes], points: int, faces: int, size: int) -> list[list[bytes]]:
-    """Return the rows of words whose lines break anywhere: vertices of one size, then faces.
-
-    Raises
-    ------
-    ValueError
-        If they are too few.
-    """
+    """Return the rows of words whose lines break anywhere: vertices of one size, then faces."""
     whole = min(points, len(words) // size)
     ends = [size * i for i in range(whole + 1)]
     while whole == points and len(ends) <= points + faces and ends[-1] < len(words):
@@ -108,17 +92,7 @@ def _broken(words: list[bytes], points: int, faces: int, size: int) -> list[list
 
 
 def read_mesh(path: Path) -> pv.PolyData:
-    """Return the surface of a MESH file, with places in 4-space as the array ``position``.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Raises
-    ------
-    ValueError
-        If it is a binary file, or it is not whole.
-    """
+    """Return the surface of a MESH file, with places in 4-space as the array ``position``."""
     data = path.read_bytes()
     start = _MESH.match(data)
     if start is None:

@@ -25,13 +25,7 @@ _TARGETS = (34962, 34963)
 
 
 def missing_part(file: BinaryIO) -> str:
-    """Return the reason why a file is refused, or "".
-
-    Parameters
-    ----------
-    file : file
-        A file of glTF, which is open.
-    """
+    """Return the reason why a file is refused, or ""."""
     head, text = file.read(20), b""
     if head.startswith(b"glTF"):
         whole, length = struct.unpack("<8xII4x", head)

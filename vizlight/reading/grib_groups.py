@@ -39,26 +39,10 @@ def _options(path: Path, errors: str) -> Keywords:
 def opened(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[str, object], str]:
     """Return the variables of a file; the first group of them, with all others on the same grid.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-    at : mapping
-        Values of coordinates; those of which a group has only one choose the group, such as
-        ``{"heightAboveGround": 10}``.
-
-    Returns
-    -------
-    xarray.Dataset
-        Variables, with times as numbers. Of two with one name the second is named by its level.
-    dict
-        The values of ``at`` along axes.
-    str
-        Words for the variables on other grids; empty without any.
-
-    Raises
-    ------
-    ValueError
-        If no group has such values, or the grid of the file is unknown.
+    ``at`` has values of coordinates; those of which a group has only one choose the group, such as
+    ``{"heightAboveGround": 10}``. Times are numbers, and of two variables with one name the second
+    is named by its level. The other results are the values of ``at`` along axes, and words for the
+    variables on other grids.
     """
     import xarray
 
@@ -80,10 +64,7 @@ def opened(path: Path, at: Mapping[str, object]) -> tuple[Foreign, dict[str, obj
 def missing_messages(data: Foreign) -> list[str]:
     """Return words for variables that lack messages: those of some steps, levels or members.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Data that cfgrib has opened; where a message is missing they are NaN.
+    cfgrib has opened the data: where a message is missing they are NaN.
     """
     words = []
     for name, variable in data.variables.items():

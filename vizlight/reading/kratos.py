@@ -24,13 +24,7 @@ _THIN = re.compile(rb"Shell|Membrane|Face|Surface|Triangle|Quadrilateral|Conditi
 
 
 def read(path: Path) -> pv.UnstructuredGrid:
-    """Return the cells of a file; ``property`` is the number of the properties of each.
-
-    Raises
-    ------
-    ValueError
-        If it has no cells, or a corner of one is no node.
-    """
+    """Return the cells of a file; ``property`` is the number of the properties of each."""
     content = path.read_bytes()
     file_parts.warn_of_last_line(path, content)
     blocks = _BLOCK.findall(re.sub(rb"//[^\n]*", b"", content))

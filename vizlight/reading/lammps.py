@@ -23,22 +23,10 @@ _STEP = "ITEM: TIMESTEP"
 def read(path: Path) -> pv.PolyData | None:
     """Return the atoms of the first step of a dump; None where it is no dump in text.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Returns
-    -------
-    pyvista.PolyData or None
-        Where the dump has elements, bonds and atoms as of :func:`.molecules.of_xyz`. Else points in
-        the unit of the simulation with ``atom_type``, its type in the simulation, and ``radius``,
-        the median distance of nearest neighbours. Further arrays are ``velocity``, ``force``,
-        ``charge``, ``molecule_id`` and ``mass``, as far as the dump has them.
-
-    Raises
-    ------
-    ValueError
-        If atoms or their places are missing, or a word is no number.
+    Where the dump has elements, bonds and atoms are as of :func:`.molecules.of_xyz`. Else points
+    are in the unit of the simulation with ``atom_type``, its type in the simulation, and
+    ``radius``, the median distance of nearest neighbours. Further arrays are ``velocity``,
+    ``force``, ``charge``, ``molecule_id`` and ``mass``, as far as the dump has them.
     """
     data = path.read_bytes()
     if not data.lstrip().startswith((b"ITEM: TIMESTEP", b"ITEM: UNITS", b"ITEM: TIME")):

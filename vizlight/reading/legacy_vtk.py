@@ -67,13 +67,7 @@ _WORD = re.compile(rb"(?mi)^[ \t]*(?!(?:nan|inf|infinity)\b)[a-z_%]")
 
 
 def missing_part(file: BinaryIO) -> str:
-    """Return the reason why a file is refused, or "".
-
-    Parameters
-    ----------
-    file : file
-        A legacy file of VTK, which is open.
-    """
+    """Return the reason why a file is refused, or ""."""
     head = file.read(_HEAD)
     is_text = _TEXT.match(head) is not None
     version = _VERSION.match(head)
@@ -261,12 +255,7 @@ def _beyond(words: list[bytes], kind: str) -> bytes | None:
 def missing_numbers(mesh: pv.DataSet, path: Path, /) -> str:
     """Return the numbers that a legacy file of text lacks for its mesh; VTK makes them up.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh as its reader returned it.
-    path : pathlib.Path
-        Its file; one of another format lacks nothing.
+    A file of another format lacks nothing.
     """
     if path.suffix.lower() != ".vtk":
         return ""

@@ -28,14 +28,8 @@ HALF_WAY = 180.0
 class Listed:
     """Names of the coordinates that give the values of a list their places.
 
-    Attributes
-    ----------
-    dim : str
-        Name of the dimension of the list.
-    x, y : str
-        Names of the coordinates of each value.
-    x_bounds, y_bounds : str
-        Names of the coordinates of the corners of each cell, empty for none.
+    ``dim`` is the dimension of the list, ``x`` and ``y`` those of each value, and the bounds those
+    of the corners of each cell, empty for none.
     """
 
     dim: str
@@ -48,11 +42,7 @@ class Listed:
 def listed(file: Foreign, letter_of: Callable[[str, Mapping[str, Foreign]], str]) -> Listed | None:
     """Return the list with the most values of a dataset, None without a list.
 
-    Parameters
-    ----------
-    file : xarray.Dataset
-    letter_of : callable
-        Function of the name and the attributes of coordinates that returns x, y or an empty text.
+    ``letter_of`` takes the name and the attributes of coordinates to x, y or an empty text.
     """
     places: dict[str, dict[str, str]] = {}
     for key, variable in file.variables.items():
@@ -80,14 +70,8 @@ def joined(
 ) -> Foreign:
     """Return a dataset with the cells on all faces of a cube in one list, with their corners.
 
-    Parameters
-    ----------
-    file : xarray.Dataset
-        Dataset; one without places of the corners on several faces is returned as it is.
-    letter_of : callable
-        As for :func:`listed`.
-    chosen : collection of str
-        Dimensions that are no faces, or of which one is chosen.
+    One without places of the corners on several faces is returned as it is; ``chosen`` are
+    dimensions that are no faces, or of which one is chosen.
     """
     pairs: dict[tuple[str, ...], dict[str, str]] = {}
     for key, variable in file.variables.items():
@@ -136,12 +120,7 @@ def _bounds(file: Foreign, name: str) -> str:
 def cells(x: Array, y: Array, *, degrees: bool) -> tuple[unrolled.Faces, Bools]:
     """Return cells in the plane, and a mask of those that have three corners or more.
 
-    Parameters
-    ----------
-    x, y : ndarray, shape (N, K)
-        Coordinates of the corners of each cell, NaN for none.
-    degrees : bool
-        Whether they are longitude and latitude, in degrees.
+    The coordinates (N, K) of the corners of each cell are NaN for none.
     """
     there = np.isfinite(x) & np.isfinite(y)
     x, y = np.round(x % 360.0 if degrees else x, _SAME), np.round(y, _SAME)
@@ -163,12 +142,7 @@ def points(
 ) -> tuple[pv.PolyData | pv.RectilinearGrid, Indices]:
     """Return points in the plane, and the row of the list of each; a grid if they stand on one.
 
-    Parameters
-    ----------
-    x, y : ndarray, shape (N,)
-        Coordinates; points that are not finite are left out.
-    degrees : bool
-        Whether they are longitude and latitude, in degrees.
+    Points that are not finite are left out.
     """
     kept = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
     x, y = x[kept], y[kept]
@@ -191,14 +165,8 @@ def points(
 class Around:
     """Triangles between points that cover the earth.
 
-    Attributes
-    ----------
-    lon, lat : ndarray, shape (N,)
-        Places of the points, and of poles after them that lie in a ring of one parallel.
-    triangles : ndarray of int, shape (M, 3)
-        Points, counted around as seen from above.
-    rings : list of ndarray of int
-        Points around each of these poles.
+    Poles that lie in a ring of one parallel come after the points, and ``rings`` has the points
+    around each; triangles are counted around as seen from above.
     """
 
     lon: Array
@@ -220,10 +188,7 @@ class Around:
 def around_earth(lon: Array, lat: Array) -> Around | None:
     """Return Delaunay's triangles between points that cover the earth evenly, None for others.
 
-    Parameters
-    ----------
-    lon, lat : ndarray, shape (N,)
-        Places in degrees, such as those of a reduced Gaussian grid.
+    Places are in degrees, such as those of a reduced Gaussian grid.
     """
     if not FEWEST <= len(lon) <= MOST_JOINED or np.ptp(lat) < TALL:
         return None
@@ -257,12 +222,7 @@ def around_earth(lon: Array, lat: Array) -> Around | None:
 def with_turned_rows(rows: Raw, width: int) -> Raw:
     """Return a list of which every second row of a grid runs back, with all rows alike.
 
-    Parameters
-    ----------
-    rows : ndarray, shape (N,)
-        Values.
-    width : int
-        Number of values of a row.
+    ``width`` is the number of values of a row.
     """
     turned = rows.reshape(-1, width).copy()
     turned[1::2] = turned[1::2, ::-1]
@@ -287,13 +247,7 @@ def _rows_and_columns(x: Array, y: Array) -> Indices | None:
 
 
 def seem_radians(x: Array, y: Array) -> bool:
-    """Return whether angles without a unit are in radians: all around the globe, and no further.
-
-    Parameters
-    ----------
-    x, y : ndarray
-        Longitudes and latitudes.
-    """
+    """Return whether angles without a unit are in radians: all around the globe, and no further."""
     around = 0.9 * 2 * math.pi < np.ptp(x) < 1.01 * 2 * math.pi
     return bool(around and 0.9 * math.pi < np.ptp(y) and np.abs(y).max() < 1.01 * math.pi / 2)
 
@@ -303,13 +257,6 @@ def tracks(file: Foreign, dim: str) -> Indices | None:
 
     These are the trajectories of the CF conventions, as ragged arrays, contiguous or with indices,
     or a single one.
-
-    Parameters
-    ----------
-    file : xarray.Dataset
-        Dataset.
-    dim : str
-        Dimension of the list.
     """
     if str(file.attrs.get("featureType", "")).lower() not in ("trajectory", "trajectoryprofile"):
         return None
@@ -329,13 +276,6 @@ def height_of_track(file: Foreign, dim: str) -> tuple[str, Array] | None:
     """Return the name and the heights in metres, above 0 or below it, of the values of a track.
 
     None where the dataset has none that differ, in a unit of length.
-
-    Parameters
-    ----------
-    file : xarray.Dataset
-        Dataset.
-    dim : str
-        Dimension of the list.
     """
     for key, variable in file.variables.items():
         standard, way = (variable.attrs.get(word, "") for word in ("standard_name", "positive"))
@@ -357,14 +297,7 @@ def height_of_track(file: Foreign, dim: str) -> tuple[str, Array] | None:
 def section(x: Array, y: Array, heights: Array, *, degrees: bool) -> tuple[pv.PolyData, Indices]:
     """Return a track as a line over its length in metres, and the row of the list of each point.
 
-    Parameters
-    ----------
-    x, y : ndarray, shape (N,)
-        Coordinates.
-    heights : ndarray, shape (N,)
-        Heights in metres, which are y of the line.
-    degrees : bool
-        Whether the coordinates are longitude and latitude, in degrees; else in metres.
+    Heights in metres are y of the line. Coordinates are in degrees or else in metres.
     """
     kept = np.flatnonzero(np.isfinite(x) & np.isfinite(y) & np.isfinite(heights))
     x, y = np.diff(x[kept]), y[kept]
@@ -378,15 +311,7 @@ def section(x: Array, y: Array, heights: Array, *, degrees: bool) -> tuple[pv.Po
 
 
 def with_tracks(points: pv.PolyData, numbers: Indices) -> pv.PolyData:
-    """Return points with lines along their tracks, which end where they leave the map.
-
-    Parameters
-    ----------
-    points : pyvista.PolyData
-        Points, in degrees or another unit.
-    numbers : ndarray of int, shape (N,)
-        Number of the track of each point.
-    """
+    """Return points with lines along their tracks, which end where they leave the map."""
     order = np.argsort(numbers, kind="stable")
     steps = np.abs(np.diff(points.points[order, 0]))
     ends = np.flatnonzero((np.diff(numbers[order]) != 0) | (steps > HALF_WAY)) + 1

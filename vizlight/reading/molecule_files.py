@@ -29,22 +29,9 @@ def of_gro(path: Path) -> pv.PolyData:
     """Return the first frame of a GROMACS file in angstroms, its bonds by the distances of atoms.
 
     The names of atoms give their elements. Where no atoms are joined they are beads, which have no
-    element, and the usual distance to the nearest one as their radius.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Returns
-    -------
-    pyvista.PolyData
-        Bonds and atoms as of :func:`.molecules.of_pdb`, with ``residue_name`` and, where the file
-        has it, ``velocity`` in nm/ps.
-
-    Raises
-    ------
-    ValueError
-        If atoms are missing, or columns of one are no numbers.
+    element, and the usual distance to the nearest one as their radius. Bonds and atoms are as of
+    :func:`.molecules.of_pdb`, with ``residue_name`` and, where the file has it, ``velocity`` in
+    nm/ps.
     """
     lines = _lines(path)
     count = _count(lines[1] if len(lines) > 1 else "")
@@ -93,17 +80,7 @@ def _element(residue: str, name: str) -> str:
 
 
 def of_mol2(path: Path) -> pv.PolyData:
-    """Return the first molecule of a Tripos file with its bonds and charges, if it has these.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Raises
-    ------
-    ValueError
-        If it has no atoms, or a bond has one that is missing.
-    """
+    """Return the first molecule of a Tripos file with its bonds and charges, if it has these."""
     first, *others = "\n".join(_lines(path)).split("@<TRIPOS>MOLECULE")[1:] or [""]
     if others:
         molecules.warn_of_states(path, 1 + len(others), "molecules")
@@ -131,17 +108,7 @@ def _of_type(word: str) -> str:
 
 
 def of_mol(path: Path) -> pv.PolyData:
-    """Return the first molecule of an MDL file with its bonds.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Raises
-    ------
-    ValueError
-        If atoms or bonds, or an atom of a bond, are missing.
-    """
+    """Return the first molecule of an MDL file with its bonds."""
     lines = _lines(path)
     if (states := sum(line.startswith("$$$$") for line in lines)) > 1:
         molecules.warn_of_states(path, states, "molecules")

@@ -82,24 +82,11 @@ def of_pdb(path: Path) -> pv.PolyData:
     VTK's reader joins the atoms of all models with each other, leaves out hydrogen, and takes the
     columns of old files for elements, which makes false bonds.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file.
-
-    Returns
-    -------
-    pyvista.PolyData
-        Bonds, and points of atoms without any, with ``atom_type``, the atomic number, ``radius``,
-        that of van der Waals, ``residue``, ``residue_name``, ``chain``, ``occupancy``, ``b_factor``
-        and ``backbone_mask``, 1 for the atom that stands for a residue and 2 for the oxygen of its
-        peptide; where the file tells of helices and strands, with ``secondary_structure``. Of atoms
-        with several places the first is taken.
-
-    Raises
-    ------
-    ValueError
-        If there are no atoms, or columns of one are no numbers.
+    Bonds, and points of atoms without any, have ``atom_type``, the atomic number, ``radius``, that
+    of van der Waals, ``residue``, ``residue_name``, ``chain``, ``occupancy``, ``b_factor`` and
+    ``backbone_mask``, 1 for the atom that stands for a residue and 2 for the oxygen of its peptide;
+    where the file tells of helices and strands, ``secondary_structure``. Of atoms with several
+    places the first is taken.
     """
     data = path.read_bytes()
     file_parts.warn_of_last_line(path, data)
@@ -181,22 +168,9 @@ def _records(lines: Sequence[str]) -> list[tuple[str, int, int, int]]:
 def of_cif(path: Path) -> pv.PolyData:
     """Return the atoms of a CIF file: of the first model of a macromolecule, or of a unit cell.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file, which gemmi reads.
-
-    Returns
-    -------
-    pyvista.PolyData
-        Bonds and atoms as of :func:`of_pdb`; those of a crystal, in all places of its cell by its
-        symmetry, with ``occupancy`` alone and the field array ``unit_cell``, its edges. Of elements
-        that share a place the most frequent counts.
-
-    Raises
-    ------
-    ValueError
-        If it is no CIF, or has no atoms.
+    gemmi reads the file. Bonds and atoms are as of :func:`of_pdb`; those of a crystal, in all
+    places of its cell by its symmetry, have ``occupancy`` alone and the field array ``unit_cell``,
+    its edges. Of elements that share a place the most frequent counts.
     """
     import gemmi
 
@@ -267,18 +241,9 @@ def attach_chains(
 ) -> None:
     """Attach the numbers of chains and of residues by name, and marks of the atoms of backbones.
 
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Atoms with ``residue``, which is changed.
-    chains : sequence of str
-        Name of the chain of each.
-    names : sequence of (str, str)
-        Name and element of each.
-    residues : sequence of str
-        Name of the residue of each.
-    structure : sequence of (str, int, int, int)
-        Chain, first and last residue, and kind of each helix and strand of which the file tells.
+    The atoms have ``residue``, and change. ``chains``, ``names`` (with the element) and
+    ``residues`` are of each atom; ``structure`` has the chain, first and last residue, and kind of
+    each helix and strand of which the file tells.
     """
     every = sorted({*chains})
     number = {name: i for i, name in enumerate(every)}
@@ -523,23 +488,9 @@ def _element(line: str) -> str:
 def of_xyz(lines: Sequence[str], path: Path) -> pv.PolyData | None:
     """Return the first state of a molecule, its bonds by the distances of its atoms.
 
-    Parameters
-    ----------
-    lines : sequence of str
-        Lines of the file: the number of atoms, a comment, and a symbol and a place for each atom.
-    path : pathlib.Path
-        Path of the file, for messages.
-
-    Returns
-    -------
-    pyvista.PolyData or None
-        Bonds, and points of atoms without any, with ``atom_type``, the atomic number, and
-        ``radius``, that of van der Waals; None where the lines are of another form.
-
-    Raises
-    ------
-    ValueError
-        If atoms are missing, or a line has no element or no place.
+    Lines are the number of atoms, a comment, and a symbol and a place for each atom. Bonds, and
+    points of atoms without any, have ``atom_type``, the atomic number, and ``radius``, that of van
+    der Waals; None is returned where the lines are of another form.
     """
     words = [line.split() for line in lines]
     third = words[2] if len(words) > 2 else []
@@ -575,21 +526,8 @@ def joined(
 ) -> pv.PolyData:
     """Return atoms joined by bonds, those of the file or else by their distances.
 
-    Parameters
-    ----------
-    elements : sequence of str
-        Symbol of each atom; anything but an element has the atomic number 0.
-    places : array_like, shape (N, 3)
-        Places in angstroms.
-    pairs : ndarray of int, shape (M, 2), optional
-        Atoms that are joined.
-    name : str, optional
-        Name of the molecule; one without a letter is none.
-
-    Raises
-    ------
-    ValueError
-        If there are no atoms.
+    Places are in angstroms; anything but an element has the atomic number 0, and a name without a
+    letter is none.
     """
     # Few files need what takes 10 ms to load.
     from vtkmodules.vtkDomainsChemistry import vtkPeriodicTable

@@ -20,17 +20,8 @@ PATH_LENGTH, SOMA = "path length from the root", 1
 def read(path: Path) -> pv.PolyData:
     """Read the branches of a neuron as polylines with data of each point.
 
-    These are the path length from the root of its tree, the radius and the type.
-
-    Parameters
-    ----------
-    path : Path
-        File of the format SWC.
-
-    Raises
-    ------
-    ValueError
-        If a row has not the 7 columns of a neuron.
+    These are the path length from the root of its tree, the radius and the type. The file is an
+    SWC.
     """
     with path.open(encoding="latin-1") as file, warnings.catch_warnings():
         warnings.filterwarnings("ignore", "loadtxt: input contained no data")

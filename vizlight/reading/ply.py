@@ -67,17 +67,7 @@ class _Element:
 
 
 def read(path: Path) -> pv.PolyData:
-    """Return the mesh of a PLY file.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Raises
-    ------
-    ValueError
-        If it is no such file, or it is not whole.
-    """
+    """Return the mesh of a PLY file."""
     data = path.read_bytes()
     head = _HEAD.match(data)
     if head is None:

@@ -29,13 +29,7 @@ _DATA = re.compile(rb"(?m)^DATA[ \t]+(\w+)[ \t\r]*\n")
 
 
 def read_pcd(path: Path) -> pv.PolyData:
-    """Return the points of a PCD file that have a place.
-
-    Raises
-    ------
-    ValueError
-        If its header is none, or points are missing.
-    """
+    """Return the points of a PCD file that have a place."""
     content = path.read_bytes()
     end = _DATA.search(content)
     if end is None:

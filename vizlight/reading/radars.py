@@ -37,21 +37,8 @@ def grid(
     Places are those of rays in an atmosphere that bends them as if the earth had 4/3 of its radius
     (Doviak and Zrnic, Doppler Radar and Weather Observations, 1993, equations 2.28b and 2.28c).
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-        File of CfRadial, its times numbers.
-    at : dict
-        ``sweep``: the angle or the number of a sweep. Default: the first.
-    nodata : float, optional
-        Value that stands for none, as for :func:`.fills.without_missing`.
-    source : str
-        Name of the data in a warning.
-
-    Raises
-    ------
-    ValueError
-        If there is no such sweep, or no variable along its rays.
+    The data are a file of CfRadial, its times numbers; ``at`` has the angle or the number of a
+    ``sweep``, by default the first. ``nodata`` is as for :func:`.fills.without_missing`.
     """
     if others := {*at} - {"sweep"}:
         raise ValueError(f"at: no axis {min(others)!r} in a file of a radar, but sweep")

@@ -55,24 +55,9 @@ def read(path: Path, nodata: float | None = None) -> pv.ImageData | pv.Structure
     whole numbers. A single band that can be no heights is named like its file: its unit is no
     length, it has a few whole numbers, or a range of a few units on a map a thousand times wider,
     or it is a gray picture, of bytes, or of numbers without a sign and a place. What the file marks
-    as missing is NaN. The field data have its reference system as ``crs``, and its unit.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file.
-    nodata : float, optional
-        Value that stands for none, as for :func:`.fills.without_missing`.
-
-    Returns
-    -------
-    pyvista.ImageData or pyvista.StructuredGrid
-        A structured grid where rows and columns are not along the axes.
-
-    Raises
-    ------
-    ValueError, rasterio.errors.RasterioError
-        If there is no band of numbers, or a part of the file is missing.
+    as missing is NaN. The field data have its reference system as ``crs``, and its unit. ``nodata``
+    is as for :func:`.fills.without_missing`; the grid is structured where rows and columns are not
+    along the axes.
     """
     import rasterio
 

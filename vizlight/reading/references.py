@@ -24,13 +24,7 @@ _NAMED = {
 
 
 def named(path: Path) -> dict[Path, str]:
-    """Return the files that a file takes, with their names in it; links are not followed.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file, of any format.
-    """
+    """Return the files that a file takes, with their names in it; links are not followed."""
     pattern = _NAMED.get(path.suffix.lower())
     if pattern is None:
         return {}
@@ -40,13 +34,7 @@ def named(path: Path) -> dict[Path, str]:
 
 
 def outside(path: Path) -> list[str]:
-    """Return the names of the files that a file takes from elsewhere than its own folder.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file, of any format.
-    """
+    """Return the names of the files that a file takes from elsewhere than its own folder."""
     # By the words alone, as links within the folder are its owner's.
     folder = path.parent.absolute()
     return sorted(name for place, name in named(path).items() if not place.is_relative_to(folder))

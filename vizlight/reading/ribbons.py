@@ -34,20 +34,9 @@ _ROUND = 4
 def structure(places: Array, piece: Indices) -> Indices:
     """Return the secondary structure that the trace of a protein alone tells.
 
-    Parameters
-    ----------
-    places : ndarray, shape (N, 3)
-        Places of the alpha carbons in angstroms.
-    piece : ndarray of int, shape (N,)
-        Number of the piece of a chain of each.
+    Places are those of the alpha carbons in angstroms, ``piece`` is the number of the piece of a
+    chain of each, and the result is ``LOOP``, ``HELIX`` or ``STRAND``.
 
-    Returns
-    -------
-    ndarray of int, shape (N,)
-        ``LOOP``, ``HELIX`` or ``STRAND``.
-
-    Notes
-    -----
     Source: Labesse, Colloc'h, Pothier and Mornon, Computer Applications in the Biosciences 13
     (1997), P-SEA. Here a carbon is the second or the third of four whose shape fits, and every
     strand has contacts.
@@ -88,22 +77,8 @@ def structure(places: Array, piece: Indices) -> Indices:
 def sides(places: Array, oxygens: Array, piece: Indices) -> Array:
     """Return the direction across the ribbon at each residue, turned as little as can be.
 
-    Parameters
-    ----------
-    places : ndarray, shape (N, 3)
-        Places of the alpha carbons.
-    oxygens : ndarray, shape (N, 3)
-        Places of the oxygens of their residues, NaN where there are none.
-    piece : ndarray of int, shape (N,)
-        Number of the piece of a chain of each.
+    Places are those of the alpha carbons, and of the oxygens of their residues, NaN for none.
 
-    Returns
-    -------
-    ndarray, shape (N, 3)
-        Unit vectors.
-
-    Notes
-    -----
     Source: Carson and Bugg, Journal of Molecular Graphics 4 (1986): along the oxygen of a peptide,
     which points along helices, and across strands in the plane of their sheet. Without one the
     bisector of the neighbours of a carbon is normal to the ribbon.
@@ -132,23 +107,9 @@ def swept(
 ) -> tuple[pv.PolyData, Array]:
     """Return closed surfaces along pieces of chains: ribbons, arrows and tubes.
 
-    Parameters
-    ----------
-    places, across : ndarray, shape (N, 3)
-        Places of residues, two at least in each piece, and directions across ribbons.
-    kinds, piece : ndarray of int, shape (N,)
-        Secondary structure, and number of the piece of a chain.
-    radii : ndarray, shape (N,)
-        Radii of tubes.
-    fine : bool
-        Whether there are few residues, which are seen large.
-
-    Returns
-    -------
-    surface : pyvista.PolyData
-        Surface with point normals.
-    at : ndarray
-        Place of each of its points along the residues, of which the first is at 0.
+    Each piece has two residues at least. ``fine`` is for few residues, which are seen large. The
+    surface has point normals; the second result is the place of each of its points along the
+    residues, of which the first is at 0.
     """
     rows, around = (8, 20) if fine else (3, 10)
     before, after = _neighbours(piece)

@@ -39,12 +39,8 @@ def read_nrrd(path: Path) -> pv.DataSet:
     """Return the image of an NRRD file where its space directions say that it is.
 
     Axes of a body are those of NIfTI: x to the right, y forward and z up. Labels have the names and
-    colours of segments, as 3D Slicer writes them.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of the file. The array of labels is named "segment" if it has segments.
+    colours of segments, as 3D Slicer writes them. The array of labels is named "segment" if it has
+    segments.
     """
     image: pv.DataSet = series.unchecked(pv.get_reader(path))  # type: ignore[no-untyped-call]
     with path.open("rb") as file:
@@ -87,10 +83,6 @@ def read_meta(path: Path) -> pv.DataSet:
 
     Those of a body, if it has an anatomical orientation, are those of NIfTI; as ITK does, places
     are taken for left, posterior, superior.
-
-    Parameters
-    ----------
-    path : pathlib.Path
     """
     image: pv.DataSet = series.unchecked(pv.get_reader(path))  # type: ignore[no-untyped-call]
     begin = file_parts.first_bytes(path, _HEAD)

@@ -52,18 +52,7 @@ _ORIGIN, _AXES = np.zeros(3), np.eye(3)
 
 
 def read(path: Path) -> pv.MultiBlock:
-    """Return the shapes of a scene that have points, in the space of the whole.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of a file with a suffix among ``SUFFIXES``.
-
-    Raises
-    ------
-    ValueError
-        If it is of the first version of VRML.
-    """
+    """Return the shapes of a scene that have points, in the space of the whole."""
     with _LOCK, _supervise.folder(path) as folder:
         every = _of_vrml(path, folder / "scene.wrl")
     shapes = pv.MultiBlock(
@@ -298,16 +287,9 @@ def _written_out(every: list[str]) -> list[str]:
 class _Node(NamedTuple):
     """A Transform, a Shape or a group among tokens.
 
-    Attributes
-    ----------
-    name : str
-        Name of the kind of node.
-    begin, end : int
-        Numbers of the tokens of its name and of its last bracket.
-    fields : dict
-        Token and numbers of each field of a Transform.
-    children : list of int
-        Numbers of the token ``children``, or its like, and of the last of what follows.
+    ``begin`` and ``end`` are the numbers of the tokens of its name and of its last bracket,
+    ``fields`` has the token and numbers of each field of a Transform, and ``children`` the numbers
+    of the token ``children``, or its like, and of the last of its content.
     """
 
     name: str

@@ -20,17 +20,8 @@ from vizlight.vtk.arrays import vectors_of
 class Series:
     """Meshes with the same points at rising times.
 
-    Parameters
-    ----------
-    source : sequence of meshes, reader, or path
-        Meshes; a reader of PyVista with ``time_values``; or the path of a file that has one.
-    times : array_like, shape (S,), optional
-        Times of a sequence. Default: the field array ``TimeValue`` of its meshes.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If fewer than two meshes are given, or the times do not rise.
+    The source is a sequence of meshes, a reader of PyVista with ``time_values``, or the path of a
+    file that has one; times of a sequence are by default the field arrays ``TimeValue``.
     """
 
     def __init__(self, source: object, times: object = None) -> None:
@@ -78,13 +69,7 @@ class Series:
         self._first: pv.DataSet | None = None
 
     def mesh(self, step: int) -> pv.DataSet:
-        """Return the mesh of a step, which has the points of the first.
-
-        Raises
-        ------
-        TypeError, ValueError
-            If it is no mesh with cells, or its points are others.
-        """
+        """Return the mesh of a step, which has the points of the first."""
         if self._meshes is not None:
             mesh = self._meshes[step]
         else:
@@ -109,13 +94,7 @@ class Series:
         return mesh
 
     def vectors(self, step: int, array: str) -> NDArray[np.float64]:
-        """Return the vectors of a step, zero where they are not finite.
-
-        Raises
-        ------
-        ValueError
-            If the step has no such point array of 3 components.
-        """
+        """Return the vectors of a step, zero where they are not finite."""
         mesh, name = self.mesh(step), f"tangents, {self.name(step)}"
         mesh = meaning.with_named(mesh, array)[0]
         if array not in mesh.point_data:
@@ -157,20 +136,8 @@ class NoStepError(ValueError):
 def chosen(times: Sequence[float], time: object, name: str = "time") -> int:
     """Return the index of a step, or of a place along another axis.
 
-    Parameters
-    ----------
-    times : sequence of float
-        Times of the steps.
-    time : float, int, str, optional
-        A time of a step, ``"last"``, ``"first"`` or, if it is an integer and no time of a step,
-        the index of a step, from the end if negative. Default: the last.
-    name : str
-        Name in errors.
-
-    Raises
-    ------
-    NoStepError
-        If there is no such step.
+    ``time`` is the time of a step, ``"last"``, the default, ``"first"`` or, if it is an integer and
+    no time of a step, the index of a step, from the end if negative. ``name`` stands in errors.
     """
     count = len(times)
     if time is None or time == "last":
@@ -197,12 +164,7 @@ def chosen(times: Sequence[float], time: object, name: str = "time") -> int:
 
 
 def listed(times: Sequence[float]) -> str:
-    """Return the times of steps in words.
-
-    Parameters
-    ----------
-    times : sequence of float
-    """
+    """Return the times of steps in words."""
     words = [f"{time:g}" for time in times]
     if len(words) > LISTED:
         words = [*words[: LISTED - 1], "...", words[-1]]
@@ -210,14 +172,7 @@ def listed(times: Sequence[float]) -> str:
 
 
 def marked(mesh: Foreign, times: Sequence[float], index: int) -> Foreign:
-    """Attach the time of a step, and the times of all steps of the file.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataObject
-    times : sequence of float
-    index : int
-    """
+    """Attach the time of a step, and the times of all steps of the file."""
     # As field data the times stay with the mesh in filters and files, where its reader is gone.
     mesh.field_data[TIME] = [float(times[index])]
     mesh.field_data[STEPS] = [float(time) for time in times]
@@ -225,24 +180,12 @@ def marked(mesh: Foreign, times: Sequence[float], index: int) -> Foreign:
 
 
 def of(mesh: pv.DataSet) -> list[float]:
-    """Return the times of all steps of the file of a mesh, none where it had no steps.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh of a step.
-    """
+    """Return the times of all steps of the file of a mesh, none where it had no steps."""
     return [float(time) for time in mesh.field_data[STEPS]] if STEPS in mesh.field_data else []
 
 
 def note(mesh: pv.DataSet) -> str:
-    """Return a note on the last step, which was taken by default.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh of a step.
-    """
+    """Return a note on the last step, which was taken by default."""
     times = of(mesh)
     if len(times) < 2:
         return ""
@@ -261,22 +204,14 @@ def missing_of_foam(file: BinaryIO) -> str:
 def is_case(folder: Path) -> bool:
     """Return whether a path is the folder of an OpenFOAM case.
 
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Folder with ``constant``, and ``system``, a time ``0``, a mesh, or pieces of a parallel run.
+    It has ``constant``, and ``system``, a time ``0``, a mesh, or pieces of a parallel run.
     """
     places = ("system", "0", "constant/polyMesh", "processor0")
     return (folder / "constant").is_dir() and any((folder / place).is_dir() for place in places)
 
 
 def reader_of(path: Path) -> Foreign:
-    """Return PyVista's reader of a file, None where meshio or another package reads it.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-    """
+    """Return PyVista's reader of a file, None where meshio or another package reads it."""
     # A .foam file is empty and marks the folder of a case. A case that ran in parallel has its mesh
     # in processor0, processor1 and so on, until its parts are put together.
     has_mark = path.suffix.lower() == ".foam"
@@ -317,13 +252,7 @@ class _OfVtk:
 
 
 def times_of(reader: Foreign) -> list[float]:
-    """Return the times of the steps of a reader, none where its file has no time.
-
-    Parameters
-    ----------
-    reader : object
-        Reader of PyVista.
-    """
+    """Return the times of the steps of a reader, none where its file has no time."""
     if hasattr(reader, "time_values"):
         return [float(time) for time in reader.time_values]
     inner: Foreign = getattr(reader, "reader", None)
@@ -337,15 +266,7 @@ def times_of(reader: Foreign) -> list[float]:
 
 
 def at(reader: Foreign, time: float) -> Foreign:
-    """Return the mesh of a reader at a time.
-
-    Parameters
-    ----------
-    reader : object
-        Reader of PyVista.
-    time : float
-        Time of a step.
-    """
+    """Return the mesh of a reader at a time."""
     if hasattr(reader, "set_active_time_value"):
         reader.set_active_time_value(time)
     else:
@@ -355,24 +276,12 @@ def at(reader: Foreign, time: float) -> Foreign:
 
 
 def unchecked(reader: Foreign) -> Foreign:
-    """Return the mesh of a reader; PyVista would warn of arrays that do not fit, which are refused.
-
-    Parameters
-    ----------
-    reader : object
-        Reader of PyVista, or one of :func:`reader_of`.
-    """
+    """Return the mesh of a reader, without PyVista's warning of arrays that are then refused."""
     return reader.read(validate=False) if isinstance(reader, pv.BaseReader) else reader.read()
 
 
 def check_single(path: Path, time: object) -> None:
-    """Raise NoStepError if a step is asked for of a file of one mesh, which is the first and last.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-    time : float, int or str, optional
-    """
+    """Raise NoStepError for another step of a file of one mesh than the first or the last."""
     if time not in (None, "first", "last"):
         raise NoStepError(_check.message("time", "a file of several steps", f"'{path.name}'"))
 
@@ -380,16 +289,7 @@ def check_single(path: Path, time: object) -> None:
 def read(path: Path, time: object) -> pv.DataObject | None:
     """Return the mesh of a file, of a step if it has steps; None where VTK has no reader.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-    time : float, int or str, optional
-        As for :func:`chosen`.
-
-    Raises
-    ------
-    NoStepError
-        If the file has no such step, or a time is given for a file without steps.
+    ``time`` is as for :func:`chosen`.
     """
     reader = reader_of(path)
     times = times_of(reader)

@@ -21,15 +21,7 @@ def alike(
     A dimension of sides is longer or shorter by one, or as long, as ``eta_u`` and ``eta_rho``. The
     dimension of the middles is the one along the same axis that most variables have. Coordinates
     must agree; without coordinates the names begin alike, such as ``west_east_stag`` and
-    ``west_east``, ``xi_u`` and ``xi_rho``.
-
-    Parameters
-    ----------
-    file : xarray.Dataset
-    letters : dict
-        Letter of the axis of each dimension.
-    ticks : dict
-        Coordinates along each dimension, or None.
+    ``west_east``, ``xi_u`` and ``xi_rho``. ``letters`` has the axis of each dimension.
     """
     counts = {
         dim: sum(dim in variable.dims for variable in file.variables.values() if variable.ndim > 1)
@@ -77,16 +69,7 @@ def to_middles(
     """Return values on other dimensions of the same cells, None where these are not related.
 
     Where the sides are fewer than the middles, the first and the last middle have no value.
-
-    Parameters
-    ----------
-    values : xarray.DataArray
-    dims : sequence of str
-        Dimensions of the middles.
-    middles : dict
-        Dimension of the middles of each other dimension, as :func:`alike` returns.
-    sizes : dict
-        Sizes of all dimensions.
+    ``middles`` are those of :func:`alike`, and ``dims`` the dimensions of the middles.
     """
     target = [middles.get(str(dim), str(dim)) if dim not in dims else dim for dim in values.dims]
     more = [values.sizes[dim] - sizes[to] for dim, to in zip(values.dims, target, strict=True)]

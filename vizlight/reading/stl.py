@@ -35,12 +35,7 @@ _END_OF_FACET, _STL_BLOCK = b"endfacet", 1 << 20
 
 
 def triangles(path: Path, /) -> int:
-    """Return the number of triangles of an STL file, of which VTK leaves out those without area.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-    """
+    """Return the number of triangles of an STL file, of which VTK leaves out those without area."""
     with path.open("rb") as file:
         block = file.read(_STL_HEAD)
         if not _is_text_of_stl(block):

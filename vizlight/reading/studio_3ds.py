@@ -23,17 +23,7 @@ _POINTS, _TRIANGLES = 0x4110, 0x4120
 
 
 def read(path: Path) -> pv.MultiBlock:
-    """Return the objects of a file that have triangles.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Raises
-    ------
-    ValueError
-        If it is not whole, or a triangle has a point that is not there.
-    """
+    """Return the objects of a file that have triangles."""
     data = path.read_bytes()
     shapes, count = pv.MultiBlock(), 0
     points: Foreign = ()

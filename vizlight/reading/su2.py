@@ -44,17 +44,7 @@ class _Zone:
 
 
 def read(path: Path) -> pv.MultiBlock:
-    """Return the zones of a file, each as a block.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Raises
-    ------
-    ValueError
-        If it is no such file, or it is not whole.
-    """
+    """Return the zones of a file, each as a block."""
     zones, marker = [_Zone()], ""
     data = path.read_bytes()
     file_parts.warn_of_last_line(path, data)

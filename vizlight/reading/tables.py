@@ -38,13 +38,7 @@ INDEX, _UNNAMED = "index", re.compile(r"(Unnamed: 0)?")
 
 
 def read(path: Path) -> pv.PolyData:
-    """Return the points of a table by its columns of places, with their values.
-
-    Raises
-    ------
-    ValueError
-        If its first line names none, or it has no rows.
-    """
+    """Return the points of a table by its columns of places, with their values."""
     columns, texts, lines = _columns(path)
     plain = {_UNIT.sub("", name).strip().lower(): name for name in reversed(columns)}
     usual = (*_PLACES, *_DEGREES, *_longitudes(plain))
@@ -107,11 +101,6 @@ def add(mesh: pv.DataSet, path: Path) -> None:
 
     A first line of numbers is a row, in a table that would else lack one; columns are then named
     after the file.
-
-    Raises
-    ------
-    ValueError
-        If it has another number of rows, with both numbers, or is no table.
     """
     try:
         columns, _, _ = _columns(path)

@@ -26,15 +26,7 @@ _CELLS = {
 def read(path: Path) -> pv.UnstructuredGrid | pv.PolyData:
     """Return the mesh of a file, or its points where no cells are beside it.
 
-    Parameters
-    ----------
-    path : pathlib.Path
-        Path of one of the two files.
-
-    Raises
-    ------
-    ValueError
-        If a file is not whole, or its cells have points that are not there.
+    The path is one of the two files.
     """
     nodes, cells = (path.with_suffix(suffix) for suffix in SUFFIXES)
     (_, size, n_values, n_marks), rows = _table(nodes, 4)

@@ -38,16 +38,8 @@ _SOLIDS = re.compile(
 class Topology:
     """Names of the variables and dimensions of a mesh in a file.
 
-    Attributes
-    ----------
-    x, y : str
-        Names of the coordinates of the nodes.
-    table : str
-        Name of the table of the nodes of each face.
-    nodes, faces : str
-        Names of the dimensions of nodes and of faces.
-    by : str
-        Source of these names.
+    ``x`` and ``y`` are the coordinates of the nodes, ``table`` has the nodes of each face,
+    ``nodes`` and ``faces`` are dimensions, and ``by`` is the source of these names.
     """
 
     x: str
@@ -59,12 +51,7 @@ class Topology:
 
 
 def with_nodes(file: Foreign) -> Foreign:
-    """Return a dataset with a variable for each coordinate of the nodes that ESMF has in a table.
-
-    Parameters
-    ----------
-    file : xarray.Dataset
-    """
+    """Return a dataset with a variable for each coordinate of nodes that ESMF has in a table."""
     if not {"nodeCoords", "elementConn"} <= {*file.variables}:
         return file
     table = file["nodeCoords"]
@@ -82,16 +69,7 @@ def topology(
 ) -> Topology | None:
     """Return the mesh of a dataset, None where it has none.
 
-    Parameters
-    ----------
-    file : xarray.Dataset
-    letter_of : callable
-        Function of the name and the attributes of coordinates that returns x, y or an empty text.
-
-    Raises
-    ------
-    ValueError
-        If UGRID names a mesh that has no faces of nodes, or parts of it are missing.
+    ``letter_of`` is as for :func:`.listed.listed`.
     """
     meshes = [
         str(name)
@@ -142,13 +120,7 @@ def _of_faces(file: Foreign, dims: list[str]) -> str:
 def _guessed(
     file: Foreign, letter_of: Callable[[str, Mapping[str, Foreign]], str]
 ) -> Topology | None:
-    """Return the mesh of a table of numbers of nodes, which have an x and a y each.
-
-    Raises
-    ------
-    ValueError
-        If the file has such a table alone: it is no image.
-    """
+    """Return the mesh of a table of numbers of nodes, which have an x and a y each."""
     places: dict[str, dict[str, str]] = {}
     for key, variable in file.variables.items():
         name, dims = str(key), [str(dim) for dim in variable.dims]
@@ -200,12 +172,7 @@ def _numbers(variable: Foreign, count: int) -> bool:
 
 
 def tables(file: Foreign) -> set[str]:
-    """Return the names of variables that describe meshes, and so are no data.
-
-    Parameters
-    ----------
-    file : xarray.Dataset
-    """
+    """Return the names of variables that describe meshes, and so are no data."""
     names = set()
     for name in file.variables:
         attributes = _attributes(file, name)
@@ -223,20 +190,8 @@ def surface(
 ) -> tuple[unrolled.Faces, Bools]:
     """Return the faces of a mesh in a plane, and a mask of those of the file that they are.
 
-    Parameters
-    ----------
-    file : xarray.Dataset
-    of : Topology
-    scale : float
-        Factor of the coordinates.
-    degrees : bool
-        Whether they are longitude and latitude then. Faces across the meridian at which counting
-        begins anew are cut at it.
-
-    Raises
-    ------
-    ValueError
-        If a face has a missing node.
+    ``scale`` is a factor of the coordinates. In degrees, faces across the meridian at which
+    counting begins anew are cut at it.
     """
     x, y = (np.ravel(file[name].values).astype(np.float64) * scale for name in (of.x, of.y))
     table = file[of.table]

@@ -20,13 +20,7 @@ _PACKED = 8000
 
 
 def missing_part(file: BinaryIO) -> str:
-    """Return the reason why a file of points and cells is refused, or "".
-
-    Parameters
-    ----------
-    file : file
-        A file of VTK's XML, which is open.
-    """
+    """Return the reason why a file of points and cells is refused, or ""."""
     if not file.read(100).lstrip().startswith((b"<?xml", b"<VTKFile")):
         return ""  # VTK's reader says so
     if b"</VTKFile>" not in file_parts.last(file):
@@ -147,11 +141,6 @@ def missing_piece(file: BinaryIO) -> str:
 
     Its pieces should cover the whole: VTK leaves memory that none covers uninitialised, and a huge
     whole takes it long.
-
-    Parameters
-    ----------
-    file : file
-        A file of VTK's XML, which is open.
     """
     if lacks := missing_part(file):
         return lacks
@@ -172,11 +161,6 @@ def missing_block(file: BinaryIO) -> str:
     """Return the reason why an index of blocks is refused, or "".
 
     Numbers of blocks should not stand twice: VTK keeps the last one.
-
-    Parameters
-    ----------
-    file : file
-        A file of VTK's XML, which is open.
     """
     if lacks := missing_part(file):
         return lacks

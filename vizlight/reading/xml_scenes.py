@@ -30,17 +30,7 @@ _MODEL, _UNMOVED = "/3dmodel", "1 0 0 0 1 0 0 0 1 0 0 0"
 
 
 def read_collada(path: Path) -> pv.MultiBlock:
-    """Return the faces of the geometries of a COLLADA file, placed by its scene, with z up.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Raises
-    ------
-    ValueError
-        If it is no XML, a part that it names is missing, or no faces are placed.
-    """
+    """Return the faces of the geometries of a COLLADA file, placed by its scene, with z up."""
     root = _root(path.read_bytes())
     named = {f"#{node.get('id')}": node for node in root.iter() if node.get("id")}
     scene = next(root.iter("instance_visual_scene"), None)
@@ -144,17 +134,7 @@ def _points(source: ET.Element) -> Array:
 
 
 def read_3mf(path: Path) -> pv.MultiBlock:
-    """Return the objects that a 3MF file builds, each at its place.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-
-    Raises
-    ------
-    ValueError
-        If it is no such file, an object that it names is missing, or none is built.
-    """
+    """Return the objects that a 3MF file builds, each at its place."""
     with zipfile.ZipFile(path) as archive:
         relations = _root(archive.read("_rels/.rels"))
         targets = [one.get("Target") for one in relations if one.get("Type", "").endswith(_MODEL)]

@@ -103,13 +103,7 @@ def _color(channels: Sequence[float]) -> Color | None:
 
 
 def all_lights(lights: Lights, view: AnyView) -> tuple[Light, ...]:
-    """Return lights, or the default ones; lights of VTK and PyVista are converted.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If something is no light, or a light moves with a camera and the view is not one.
-    """
+    """Return lights, or the default ones; lights of VTK and PyVista are converted."""
     if lights is None:
         return default_lights(as_view(view))
     # An array of NumPy without dimensions has the method of an iterable, but cannot be iterated.

@@ -178,21 +178,7 @@ PRESETS = {name: globals()[name] for name in QUESTIONS}
 
 
 def preset_of(scene: Scene) -> str | None:
-    """Return the question of the preset with the light of a scene, None for other light.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    str or None
-
-    Raises
-    ------
-    TypeError
-        If it is no scene.
-    """
+    """Return the question of the preset with the light of a scene, None for other light."""
     _check.instance("scene", scene, Scene)
     material = scene.material
     for name in QUESTIONS:
@@ -208,13 +194,7 @@ def preset_of(scene: Scene) -> str | None:
 
 
 def optional_scene(scene: AnyScene | None) -> Scene | None:
-    """Return the scene that is meant: itself, the preset of a question, or None for None.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the argument is none of these.
-    """
+    """Return the scene that is meant: itself, the preset of a question, or None for None."""
     if isinstance(scene, str):
         if scene not in PRESETS:
             expected = f"a vizlight.Scene, or {', '.join(map(repr, PRESETS))}"
@@ -226,26 +206,14 @@ def optional_scene(scene: AnyScene | None) -> Scene | None:
 
 
 def required_scene(scene: AnyScene | None) -> Scene:
-    """Return the scene that is meant.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the argument is neither a scene nor a question.
-    """
+    """Return the scene that is meant."""
     if scene is None:
         _check.instance("scene", scene, Scene)
     return as_scene(scene)
 
 
 def as_scene(scene: AnyScene | None) -> Scene:
-    """Return the scene that is meant, for None the default one.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the argument is neither a scene nor a question.
-    """
+    """Return the scene that is meant, for None the default one."""
     return optional_scene(scene) or Scene()
 
 

@@ -247,13 +247,7 @@ class DepthCue:
 
 
 def as_view(view: View | vtkCamera | None) -> View | None:
-    """Return a view or None as it is, or the view of a camera.
-
-    Raises
-    ------
-    TypeError
-        If the argument is none of these.
-    """
+    """Return a view or None as it is, or the view of a camera."""
     if view is None or isinstance(view, View):
         return view
     if is_camera(view):

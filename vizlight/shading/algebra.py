@@ -79,10 +79,6 @@ class Algebra(Operations):
 
     The numbers of an algebra are used with operators, NumPy's functions, and the formulas of
     :mod:`vizlight.model.formulas`.
-
-    Parameters
-    ----------
-    plan : Plan
     """
 
     def __init__(self, plan: Plan) -> None:

@@ -57,14 +57,6 @@ def for_colors(scene: Scene) -> Scene:
     Lights, ambient light and depth cue of a colour count by their luma; the material has no
     highlight, and its ambient coefficient is 0.3 at least. The scene has no exposure, which
     :func:`exposed` applies to the luminance.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Scene
     """
     material, cue = scene.material, scene.depth_cue
     if cue is not None:
@@ -92,17 +84,7 @@ def for_colors(scene: Scene) -> Scene:
 def exposed(light: Array, exposure: float | None) -> Array:
     """Return luminance as an exposure shows it; as it is without one.
 
-    Parameters
-    ----------
-    light : ndarray, shape (N,)
-        Luminance, 0 or more.
-    exposure : float or None
-        Exposure of the scene.
-
-    Returns
-    -------
-    ndarray, shape (N,)
-        Light, with an exposure from 0 to 1: see :func:`vizlight.model.formulas.exposed`.
+    It is then from 0 to 1: see :func:`vizlight.model.formulas.exposed`.
     """
     if exposure is None:
         return light
@@ -150,19 +132,9 @@ def _luma(color: Color | None) -> float:
 def on_colors(colors: Bytes, light: Array, valid: Bools | None = None) -> Bytes:
     """Return colours of data in light: ``colour * min(1, max(0.3, light))``.
 
-    Parameters
-    ----------
-    colors : ndarray of uint8, shape (N, 3) or (N, 4)
-        Colours; a fourth component is kept.
-    light : ndarray, shape (N,)
-        Luminance by the scene of :func:`for_colors`.
-    valid : ndarray of bool, shape (N,), optional
-        False for points without light, which have the colour of missing data.
-
-    Returns
-    -------
-    ndarray of uint8, of the shape of ``colors``
-        Colours, rounded to the nearest byte.
+    Light (N,) is that of the scene of :func:`for_colors`; points that are not ``valid`` have the
+    colour of missing data. A fourth component of colours is kept, others are rounded to the nearest
+    byte.
     """
     out = colors.copy()
     for start in range(0, len(colors), _BLOCK):

@@ -36,28 +36,12 @@ class ArraySource(Protocol):
 class Layout(NamedTuple):
     """Facts about the inputs that a plan needs.
 
-    Attributes
-    ----------
-    n : int
-        Dimension of the space.
-    k : int or None
-        Number of tangents per point; None for a surface that is given by its normals.
-    normals : bool
-        Whether normals are given.
-    base : int
-        Number of base tangents per point, 0 for none.
-    shadowed : bool
-        Whether t of a cos-theta shadow is given.
-    fur : float
-        Density of the fur that light passes.
-    dimmed : bool
-        Whether shares of the lights are given.
-    occluded : bool
-        Whether the share of the ambient light is given.
-    two_sided : bool
-        Whether the normals have no side.
-    mixed : bool
-        Whether some of the points are lit as lines or alone, see ``ShadingInputs.dimensions``.
+    ``n`` is the dimension of the space, ``k`` the number of tangents per point, None for a surface
+    that has normals alone; ``base`` is the number of base tangents per point, and ``fur`` the
+    density of the fur that light passes. ``shadowed``: t of a cos-theta shadow is known; ``dimmed``
+    and ``occluded``: the shares of the lights and of the ambient light are; ``two_sided``: normals
+    have no side; ``mixed``: some of the points are lit as lines or alone, see
+    ``ShadingInputs.dimensions``.
     """
 
     n: int = 3
@@ -75,14 +59,9 @@ class Layout(NamedTuple):
 class Sides(NamedTuple):
     """Normals before they are turned to the side of the surface that is seen.
 
-    Attributes
-    ----------
-    normals : ndarray, shape (M, n)
-        Normals that agree with each other on a side.
-    facts : ndarray, shape (M, j)
-        Numbers of each point on which the side depends.
-    turned : callable
-        Function of normals, facts and points at the same places that returns the normals turned.
+    Normals (M, n) agree with each other on a side; ``facts`` (M, j) are numbers of each point on
+    which the side depends, and ``turned`` takes normals, facts and points at the same places to the
+    normals turned.
     """
 
     normals: Array
@@ -239,11 +218,6 @@ def array_source(name: str, value: ArrayLike | ArraySource) -> ArraySource:
     """Return rows to slice: an array is validated, anything else that slices stays as it is.
 
     Masked elements become NaN, which is not lit.
-
-    Raises
-    ------
-    TypeError
-        If an array does not hold real numbers.
     """
     if hasattr(value, "dtype") and not isinstance(value, np.ndarray):
         source: ArraySource = value  # type: ignore[assignment]

@@ -215,13 +215,7 @@ def checked_bundle(value: object) -> bool | Bundle:
 
 
 def check_sides(facing: object, feature_angle: object) -> None:
-    """Check the options of the side of a surface that is lit, and of its edges.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a value does not fit.
-    """
+    """Check the options of the side of a surface that is lit, and of its edges."""
     _check.choice("facing", facing, get_args(Facing))
     if isinstance(feature_angle, str):
         if feature_angle != "auto":

@@ -39,16 +39,8 @@ def arrays_of(
 ) -> dict[str, Raw]:
     """Return the arrays of a result by their names, the light itself last.
 
-    Parameters
-    ----------
-    shading : Shading
-        Light of N points.
-    name : str
-        Name of the light.
-    occlusion : ndarray, shape (N,), optional
-        Share of the ambient light that reaches a point.
-    valid : bool
-        Whether the mask of lit points is returned even if all points could be lit.
+    ``occlusion`` is the share of the ambient light that reaches a point; with ``valid`` the mask of
+    lit points is returned even if all points could be lit.
     """
     parts: dict[str, Raw] = {}
     if shading.diffuse is not None and shading.specular is not None:

@@ -29,13 +29,7 @@ from vizlight.shading.plan import Plan
 
 
 def light(w: Algebra, plan: Plan) -> None:
-    """Put I = ka Ia + sum of f (kd D + ks S) over the lamps, faded with depth.
-
-    Parameters
-    ----------
-    w : Algebra
-    plan : Plan
-    """
+    """Put I = ka Ia + sum of f (kd D + ks S) over the lamps, faded with depth."""
     # Taken once for all lamps: frames, the direction to the eye, the way through fur.
     normal = w.direction("normals") if w.has("normals") else None
     base = None

@@ -31,12 +31,8 @@ UNIT = 1e-3
 class Places(NamedTuple):
     """Places on segments or triangles.
 
-    Attributes
-    ----------
-    corners : ndarray of int, shape (M, s)
-        Points at the ends of the segment, s = 2, or the corners of the triangle, s = 3.
-    weights : ndarray, shape (M, s)
-        Share of each corner in the place, 0 or more and with sum 1.
+    Corners (M, s) are the ends of a segment, s = 2, or those of a triangle, s = 3; weights are 0 or
+    more with sum 1.
     """
 
     corners: Indices
@@ -54,25 +50,11 @@ def measurable(inputs: ShadingInputs) -> bool:
 class Between:
     """Points and vectors of a mesh, to be interpolated and lit.
 
-    Parameters
-    ----------
-    inputs : ShadingInputs
-        Arrays of the mesh, for which :func:`measurable` holds.
-    scene : Scene
-        Scene; its depth cue, if any, has both ends.
-    options : ShadingOptions
-        Options of the light. ``precision`` has no effect: places are lit in float64.
-
-    Attributes
-    ----------
-    points : ndarray, shape (N, n)
-        Points.
-    vectors : dict of str to ndarray, shape (N, k, n)
-        Unit ``normals``, ``tangents`` and ``base_tangents``, if the inputs have them. At
-        points that were added they are as interpolation leaves them, shorter than the others, so
-        that parts of a cell interpolate to the same directions as the cell; see :meth:`rows`.
-    scales : dict of str to float
-        Factors by which tangents have been divided.
+    The inputs are such that :func:`measurable` holds, a depth cue of the scene has both ends, and
+    places are lit in float64. ``vectors`` are unit ``normals``, ``tangents`` and ``base_tangents``
+    (N, k, n), if the inputs have them; at points that were added they are as interpolation leaves
+    them, shorter than the others, so that parts of a cell interpolate to the same directions as the
+    cell; see :meth:`rows`. ``scales`` are factors by which tangents have been divided.
     """
 
     def __init__(self, inputs: ShadingInputs, scene: Scene, options: ShadingOptions) -> None:
@@ -158,15 +140,7 @@ class Between:
     def peaks(self, cells: Indices) -> list[Array]:
         """Return the places in cells where each light's highlight may peak, as weights of corners.
 
-        Parameters
-        ----------
-        cells : ndarray of int, shape (M, s)
-            Segments, s = 2, or triangles, s = 3.
-
-        Returns
-        -------
-        list of ndarray, shape (M, s)
-            Weights of one place per cell, for each light. Empty where no closed form gives them.
+        One place (M, s) per cell is returned for each light, none where no closed form gives them.
         """
         material, view = self.scene.material, self.scene.view
         lines = "tangents" in self.vectors and self.vectors["tangents"].shape[1] == 1
@@ -221,17 +195,8 @@ def mean_spaces(frames: Array, places: Places) -> Array:
     For one vector, signs are chosen so that the mean is as long as possible; given signs do not
     matter. Where they agree this is the plain mean. For several vectors, the projections on the
     spaces are averaged, and the result is the space of the k largest eigenvalues of that average,
-    which depends on no basis.
-
-    Parameters
-    ----------
-    frames : ndarray, shape (N, k, n)
-        Vectors at the points: one of any length, or several orthonormal ones.
-    places : Places
-
-    Returns
-    -------
-    ndarray, shape (M, k, n)
+    which depends on no basis. Frames (N, k, n) have one vector of any length, or several
+    orthonormal ones.
     """
     _, k, n = frames.shape
     m, s = places.weights.shape
@@ -272,20 +237,7 @@ def random_places(
 ) -> tuple[Places, Indices]:
     """Return places in cells, uniform in area or length, and the cell of each.
 
-    Parameters
-    ----------
-    points : ndarray, shape (N, n)
-    cells : ndarray of int, shape (M, s)
-        Segments, s = 2, or triangles, s = 3.
-    count : int
-        Number of places.
-    random : numpy.random.Generator
-
-    Returns
-    -------
-    Places
-        Empty if the cells have no area.
-    ndarray of int, shape (count,)
+    Cells (M, s) are segments or triangles; without an area they have no places.
     """
     s = cells.shape[1]
     # In units of the extent squares of lengths neither overflow nor vanish.
@@ -321,21 +273,7 @@ def measure(
 ) -> Array:
     """Return the error of interpolated light at random places between the points.
 
-    Parameters
-    ----------
-    inputs, scene, options
-        Inputs, scene and options of the light, as for :class:`Between`.
-    shading : Shading
-        Light of the points.
-    cells : ndarray of int, shape (M, s)
-        Segments or triangles; those with a point that could not be lit are left out.
-    count, seed : int
-        Number of places and seed of the drawing.
-
-    Returns
-    -------
-    ndarray, shape (count,)
-        Error of each place, empty if the cells have no area.
+    Cells with a point that could not be lit are left out; the result is empty if they have no area.
     """
     points = np.asarray(inputs.points[:])
     good = shading.valid & np.isfinite(points).all(axis=1)

@@ -29,15 +29,8 @@ TINY = 1e-300
 class OracleLight(NamedTuple):
     """Light of one point, in the numbers of the oracle.
 
-    Attributes
-    ----------
-    luminance : float
-        Sum of all terms, with the depth cue.
-    rgb : tuple of 3 floats
-        Colour, with the depth cue and the exposure; empty if the scene has neither colour nor
-        exposure.
-    ambient, diffuse, specular : float
-        Terms of the luminance, without the depth cue.
+    The terms are without the depth cue; ``rgb`` has it and the exposure, and is empty if the scene
+    has neither colour nor exposure.
     """
 
     luminance: Real
@@ -69,24 +62,9 @@ class Oracle:
     """Formulas of the light of one point in one type of real numbers.
 
     Vectors are sequences of n numbers of the type, frames are lists of orthonormal vectors.
-
-    Attributes
-    ----------
-    number : callable
-        Takes a float, returns the equal number of the type; returns its own numbers unchanged.
-    pi : float
-        Number pi.
-    dot : callable
-        Takes two vectors, returns their scalar product.
-    hypot : callable
-        Takes the components of a vector, returns its length.
-    sin, cos, exp, log_gamma : callable
-        Functions of one number.
-    atan2 : callable
-        Takes y and x, returns the angle of (x, y).
-    cosine_integral : callable
-        Takes an angle from -pi/2 to pi/2 and p >= 0, returns the integral of cos(x)^p from 0 to
-        the angle.
+    ``number`` takes a float to the equal number of the type, and returns its own numbers unchanged;
+    ``cosine_integral`` takes an angle from -pi/2 to pi/2 and p >= 0 to the integral of cos(x)^p
+    from 0 to the angle.
     """
 
     number: Callable[[float], Real]
@@ -122,26 +100,11 @@ class Oracle:
     ) -> OracleLight:
         """Return the light of one point.
 
-        Parameters
-        ----------
-        point : sequence of n floats
-            Place of the point.
-        tangents : sequence of k vectors, or None for a surface
-            Tangents of any length.
-        normal : vector or None
-            Normal of any length.
-        scene : Scene
-            Scene; its depth cue, if any, has both ends.
-        base_tangents, fur_height, shadow, transmittance, occlusion, model, exponent, conditioned, two_sided, fur
-            Options of :func:`vizlight.shading.engine.shade`, for one point.
-        apart : float
-            Share of a tangent's length beyond which it is independent of those before it.
-
-        Returns
-        -------
-        OracleLight
-            Light of the point; NaN where the point cannot be lit.
-        """  # noqa: E501
+        Tangents are of any length, None for a surface; ``apart`` is the share of a tangent's length
+        beyond which it is independent of those before it. A depth cue of the scene has both ends,
+        and other options are those of :func:`vizlight.shading.engine.shade`, for one point. Light
+        is NaN where the point cannot be lit.
+        """
         at, n, view = self.vector(point), len(point), scene.view
         frames = self._frames(tangents, base_tangents, normal, apart)
         if frames is None or not _placed(point, scene):

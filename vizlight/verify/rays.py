@@ -18,27 +18,10 @@ def relief_ratio(
 
     Within the four cells around the node, where all of them have a surface and contain the ray's
     start, the solid is the space below the plane through the node. Elsewhere, between two cuts, the
-    height of the surface above the ray is a quadratic, known from three places.
-
-    Parameters
-    ----------
-    x, y, z : ndarray, shapes (nx,), (ny,), (ny, nx)
-        Coordinates of the nodes, and their heights.
-    place, normal : ndarray, shape (3,)
-        Node, and its unit normal.
-    depth : float
-        Depth of the ray's start below the point, above 0.
-    way : vector of 3 components or None
-        Direction toward the light, above the horizon.
-    end : vector of 3 components, optional
-        Position of the light, in place of ``way``.
-    wall : bool
-        Whether the solid ends at the border of the field; otherwise it goes on beyond it.
-
-    Returns
-    -------
-    float
-        t, to rounding where the ray does not graze the surface.
+    height of the surface above the ray is a quadratic, known from three places. The ray starts at a
+    ``depth`` above 0 below the point, along ``way``, above the horizon, or to the position ``end``
+    of the light; with ``wall`` the solid ends at the border of the field, otherwise it goes on
+    beyond it. The ratio is exact to rounding where the ray does not graze the surface.
     """
     start = place - depth * normal
     toward = np.asarray(way if end is None else end, dtype=np.float64)
@@ -150,23 +133,8 @@ def solid_ratio(
 ) -> float:
     """Return t of a point of closed surfaces: its ray against every triangle.
 
-    Parameters
-    ----------
-    bodies : sequence of ndarray, shape (T, 3, 3)
-        Corners of triangles that are oriented outward.
-    place, normal : ndarray, shape (3,)
-        Point, and its unit normal.
-    depth : float
-        Depth of the ray's start below the point, above 0.
-    way : ndarray, shape (3,)
-        Unit direction toward the light.
-    reach : float
-        Distance of the light.
-
-    Returns
-    -------
-    float
-        t; NaN where the ray meets an edge.
+    Triangles (T, 3, 3) are oriented outward; the ray starts at ``depth`` below the point, and the
+    light is at the distance ``reach``. The ratio is NaN where the ray meets an edge.
     """
     start = place - depth * normal
     inside: list[tuple[float, int]] = []

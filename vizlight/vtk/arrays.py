@@ -24,12 +24,7 @@ from vizlight.vtk import cells as vtk_cells
 class MadePoints:
     """Points that are computed for each slice and not stored.
 
-    Parameters
-    ----------
-    count : int
-        Number of points.
-    at : callable
-        Function from numbers of points to these.
+    ``at`` takes numbers of points to these.
     """
 
     dtype = np.dtype(np.float64)
@@ -101,13 +96,6 @@ def array_of(mesh: Dataset, name: str, value: object, *, sizes: Collection[int] 
 
     A cell array is an error. Errors name the arrays with a number of components among ``sizes``, if
     any.
-
-    Raises
-    ------
-    TypeError
-        If the array does not hold real numbers.
-    ValueError
-        If the mesh has no such array, its shape is wrong, or it is a cell array.
     """
     if isinstance(value, str):
         _check.text(name, value, expected="the name of a point array")

@@ -37,18 +37,10 @@ ACTIVE = "vizlight active normals"
 class Batch(NamedTuple):
     """Several datasets as one.
 
-    Attributes
-    ----------
-    mesh : vtkDataSet
-        All of them, with the arrays that are needed.
-    numbers : list of int
-        Numbers of the datasets.
-    ends : ndarray of int
-        First point of each, and the end of the last.
-    block : ndarray of int, shape (n_points,)
-        Place in ``numbers`` of the dataset of each point.
-    owner : vtkPolyData or None
-        First dataset: results of all may be kept as long as its points.
+    The mesh has the arrays that are needed, ``numbers`` are those of the datasets, ``ends`` has the
+    first point of each and the end of the last, and ``block`` the place in ``numbers`` of the
+    dataset of each point. Results of all may be kept as long as the points of ``owner``, the first
+    dataset.
     """
 
     mesh: Dataset
@@ -63,13 +55,8 @@ def batches(
 ) -> Iterator[Batch]:
     """Yield those of some datasets, by their numbers, that go together.
 
-    Parameters
-    ----------
-    meshes : dict of int to vtkDataSet
-    names : sequence of str
-        Names of the point arrays that are needed, beside the active normals.
-    kept : sequence of str
-        Names of point arrays with which a dataset stays alone.
+    ``names`` are the point arrays that are needed, beside the active normals; a dataset with an
+    array of ``kept`` stays alone.
     """
     groups: dict[object, list[list[_Member]]] = {}
     room: dict[object, int] = {}

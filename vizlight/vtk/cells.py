@@ -144,14 +144,8 @@ def has_marks(mesh: Foreign) -> bool:
 def unseen(mesh: Foreign, cells: Indices, corners: Callable[[], tuple[Indices, Indices]]) -> Bools:
     """Return which faces of a grid are marked as none that is drawn.
 
-    Parameters
-    ----------
-    mesh : vtkDataSet
-        Grid.
-    cells : ndarray of int, shape (M,)
-        Cell that each face is of.
-    corners : callable
-        Function that returns the corners of the faces, and where each begins.
+    ``cells`` is the cell that each face is of, and ``corners`` returns the corners of the faces,
+    and where each begins.
     """
     of_cells, of_points = (data(mesh).GetArray(GHOSTS) for data in (cell_data, point_data))
     faces = np.zeros(len(cells), dtype=np.bool_)
@@ -403,11 +397,6 @@ def check_whole(mesh: object, name: str, where: str = "") -> None:
     """Check that arrays have a row for each point or cell, and that cells have points that exist.
 
     VTK ends the process where they have not. Anything but a dataset passes.
-
-    Raises
-    ------
-    ValueError
-        If a cell, an array or the points of a grid do not fit.
     """
     if not isinstance(mesh, vtkDataSet):
         return

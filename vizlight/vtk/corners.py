@@ -95,16 +95,8 @@ def corner_normals(points: Raw, faces: Iterator[Indices] | list[Indices]) -> Arr
     of a corner was better by more than 2 % in the geometric mean of these shares. Neither was a
     choice of weights at each point by their error on quadrics, nor weights corrected by it.
 
-    Parameters
-    ----------
-    points : ndarray, shape (N, 3)
-    faces : iterable of ndarray of int, shape (m, s)
-        Corners of faces with s corners each.
-
-    Returns
-    -------
-    ndarray of float32, shape (N, 3)
-        Unit normals, zero at points of no face, or of faces without area.
+    Each item of ``faces`` (m, s) has faces of s corners. Normals are unit vectors in float32, zero
+    at points of no face, or of faces without area.
     """
     total = np.zeros((3, len(points)))
     for corners in faces:
@@ -263,21 +255,11 @@ def split_faces(
     """Return the corners of faces at points that are split, and the point that each point was.
 
     Around a point the faces that edges join which are not sharp have one point. An edge of more
-    than two faces joins none of them. Faces need not be wound alike; the last result tells which
-    to turn over so that they are wound as the first of their piece, where that has two sides.
-
-    Parameters
-    ----------
-    points : ndarray, shape (N, 3)
-        Points of the surface.
-    ids : ndarray of int
-        Corners of all faces, one face after the other.
-    ends : ndarray of int, shape (M + 1,)
-        Place in ``ids`` at which each face begins, and the end of the last.
-    angle : float
-        Angle in degrees between two faces from which their edge is sharp.
-    twins : ndarray of int, shape (M,), optional
-        First face of the same points as each face; others stay with that one.
+    than two faces joins none of them. Faces need not be wound alike; the last result tells which to
+    turn over so that they are wound as the first of their piece, where that has two sides. ``ends``
+    (M + 1,) is the place in ``ids`` at which each face begins, and the end of the last; an edge is
+    sharp from ``angle`` degrees on. ``twins`` is the first face of the same points as each face;
+    others stay with that one.
     """
     unit = _face_normals(points, ids, ends)
     least = np.cos(np.radians(angle + BEYOND))
@@ -326,10 +308,7 @@ def split_faces(
 def sharp_edges(points: Raw, ids: Indices, ends: Indices, angle: float) -> Indices:
     """Return both points of each edge that is sharp, of two faces that may be wound otherwise.
 
-    Parameters
-    ----------
-    points, ids, ends, angle
-        As for :func:`split_faces`.
+    Arguments are as for :func:`split_faces`.
     """
     unit = _face_normals(points, ids, ends)
     least = np.cos(np.radians(angle + BEYOND))
@@ -404,16 +383,8 @@ def _face_normals(points: Raw, ids: Indices, ends: Indices) -> Array:
 def numbered(root: Indices, ids: Indices, count: int) -> tuple[Indices, Indices]:
     """Return the points of corners, one for each root, and the earlier number of each point.
 
-    The first of the roots at a point has that point; others come after all points.
-
-    Parameters
-    ----------
-    root : ndarray of int
-        First corner that is one with each corner.
-    ids : ndarray of int
-        Point of each corner before.
-    count : int
-        Number of points before.
+    The first of the roots at a point has that point; others come after all points. ``root`` is the
+    first corner that is one with each corner, ``ids`` the point of each before.
     """
     roots = np.flatnonzero(root == np.arange(len(root), dtype=root.dtype))
     of_root = ids[roots]
@@ -433,12 +404,7 @@ NEAR = 1e-3
 class Slivers(NamedTuple):
     """Short sides of triangles.
 
-    Attributes
-    ----------
-    lower, upper : ndarray of int, shape (n,)
-        Ends of the sides.
-    squares : ndarray, shape (n,)
-        Square of the longest side of the triangle of each.
+    ``squares`` is the square of the longest side of the triangle of each.
     """
 
     lower: Indices
@@ -449,12 +415,7 @@ class Slivers(NamedTuple):
 def slivers_of(rows: Indices, squares: Sequence[Array]) -> Slivers:
     """Return the sides of triangles of at most :data:`NEAR` of the longest.
 
-    Parameters
-    ----------
-    rows : ndarray of int, shape (n, 3)
-        Corners.
-    squares : sequence of ndarray
-        Squares of the side before each corner.
+    ``squares`` are those of the side before each corner.
     """
     longest = functools.reduce(np.maximum, squares)
     limit = NEAR * NEAR * longest
@@ -490,17 +451,7 @@ def joined(points: Raw, slivers: list[Slivers]) -> Indices | None:
 
     A side joins its ends where it is at most :data:`NEAR` of the longest side of its triangle.
     Points that are joined in a chain, as across a row of slivers, stay apart where the chain is
-    longer than that.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n_points, 3)
-    slivers : list of Slivers
-
-    Returns
-    -------
-    ndarray of int, shape (n_points,), or None
-        None where no points are joined.
+    longer than that. None is returned where no points are joined.
     """
     if not slivers:
         return None
@@ -530,23 +481,10 @@ def common_normals(
 ) -> tuple[Array, Indices]:
     """Return normals that points which are joined have in common, where these are nearly the same.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n_points, 3)
-    triangles : ndarray of int, shape (n, 3)
-    normals : ndarray, shape (n_points, 3)
-        Unit normals of the points, each by its own triangles.
-    first : ndarray of int, shape (n_points,)
-        First of the points that are joined with each.
-    least : float
-        Least cosine between a point's own normal and the common one.
-
-    Returns
-    -------
-    normals : ndarray, shape (n_points, 3)
-        Of all triangles at joined points but the slivers between these.
-    first : ndarray of int, shape (n_points,)
-        First of the points that are joined and got one normal.
+    ``normals`` are those of each point by its own triangles, ``first`` is the first of the points
+    that are joined with each, and ``least`` the least cosine between a point's own normal and the
+    common one. Common ones are of all triangles at joined points but the slivers between these; the
+    second result is ``first`` of those that got one normal.
     """
     several = np.bincount(first, minlength=len(first))[first] > 1
     rows = triangles[several[triangles].any(axis=1)]

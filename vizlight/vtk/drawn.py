@@ -55,13 +55,7 @@ TABLE, SHARE = 1 << 20, 16
 
 
 class DrawnPoints:
-    """Numbers of all points of a mesh, which are cells of one corner.
-
-    Parameters
-    ----------
-    count : int
-        Number of points.
-    """
+    """Numbers of all points of a mesh, which are cells of one corner."""
 
     def __init__(self, count: int) -> None:
         self.shape = (count, 1)
@@ -78,14 +72,8 @@ class DrawnPoints:
 class DrawnCells:
     """Parts of polygons or of lines, all with as many corners, one after the other.
 
-    Parameters
-    ----------
-    whole : vtkCellArray
-        Polygons or lines.
-    size : int
-        Number of corners of a part.
-    cells : ndarray of int, or int
-        Cell of the mesh that each polygon or line is, or that of the first.
+    ``size`` is the number of corners of a part, and ``cells`` the cell of the mesh that each
+    polygon or line is, or that of the first.
     """
 
     def __init__(self, whole: vtkCellArray, size: int, cells: Indices | int = 0) -> None:
@@ -230,14 +218,8 @@ class DrawnTriangles(DrawnCells):
     """Triangles of a surface as VTK's renderer draws it, polygon by polygon.
 
     It halves all quadrilaterals from their first corner to their third, and not by the shorter
-    diagonal.
-
-    Parameters
-    ----------
-    surface : vtkPolyData
-        Surface; its strips are split into triangles after all polygons.
-    least : int, default: 3
-        Number of corners of the polygons that are kept. Those of 2 have no triangles.
+    diagonal. Strips are split after all polygons, of which those with ``least`` corners are kept;
+    those of 2 have no triangles.
     """
 
     def __init__(self, surface: vtkPolyData, least: int = TRIANGLE) -> None:
@@ -337,15 +319,7 @@ class DrawnTriangles(DrawnCells):
 
 
 class DrawnSegments(DrawnCells):
-    """Segments of lines.
-
-    Parameters
-    ----------
-    lines : vtkCellArray
-        Lines of two points or more.
-    first : int, default: 0
-        Cell of the mesh that the first line is.
-    """
+    """Segments of lines. ``first`` is the cell of the mesh that the first line is."""
 
     def __init__(self, lines: vtkCellArray, first: int = 0) -> None:
         super().__init__(lines, SEGMENT, first)

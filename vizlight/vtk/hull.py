@@ -63,12 +63,8 @@ def as_lagrange(grid: vtkUnstructuredGrid) -> vtkUnstructuredGrid:
 
     Point i of the result is the place of the surface at the parameters of control point i, of
     polynomial and of rational cells. Their error between nodes is that of the interpolation of a
-    rational function by polynomials; polynomial cells stay as they are.
-
-    Parameters
-    ----------
-    grid : vtkUnstructuredGrid
-        Grid; one without such cells is returned itself.
+    rational function by polynomials; polynomial cells stay as they are. A grid without such cells
+    is returned itself.
     """
     # VTK has a number for pyramids, and no such cell.
     distinct = as_numpy(grid.GetDistinctCellTypesArray())
@@ -410,16 +406,8 @@ def _part(
 ) -> tuple[vtkUnstructuredGrid, Indices]:
     """Return some cells of a grid as one without arrays, and the points that these have, rising.
 
-    Parameters
-    ----------
-    grid : vtkUnstructuredGrid
-        Grid.
-    every : sequence of DrawnCells
-        Its cells, and of polyhedra the faces of each, and the corners of these.
-    types : ndarray of int
-        Types of the cells.
-    block : slice
-        The cells.
+    ``every`` has the cells of the grid, and of polyhedra the faces of each, and the corners of
+    these.
     """
     ids, ends = every[0].of_block(block)
     # Neighbouring cells mostly have neighbouring points.
@@ -492,14 +480,9 @@ FEW = 1 / 16
 class GridPart(NamedTuple):
     """The outer surface of some layers of a grid, with the layer before and the one after them.
 
-    Attributes
-    ----------
-    surface : vtkPolyData
-        Faces around all points of those layers, but for those with a corner that is not finite.
-    origin : ndarray of int
-        Point of the grid that each point of the surface is.
-    side : ndarray of int8
-        0 for points of those layers, -1 in the layer before, 1 in the layer after.
+    It has the faces around all points of those layers, but for those with a corner that is not
+    finite; ``origin`` is the point of the grid that each point is, and ``side`` is 0 for points of
+    those layers, -1 in the layer before, 1 in the layer after.
     """
 
     surface: vtkPolyData

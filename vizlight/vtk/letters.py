@@ -28,18 +28,8 @@ STEPS = 4
 def triangles(word: str) -> tuple[Array, Indices]:
     """Return the triangles of a word in Arial.
 
-    Parameters
-    ----------
-    word : str
-        Word, in one line.
-
-    Returns
-    -------
-    points : ndarray, shape (N, 2)
-        Corners: x to the right from 0, y up from the line that the letters stand on, in the size
-        of the font. Digits are 0.73 high.
-    ids : ndarray of int, shape (M, 3)
-        Corners of each triangle.
+    Corners (N, 2) are x to the right from 0, y up from the line that the letters stand on, in the
+    size of the font. Digits are 0.73 high.
     """
     outlines = _outlines(word)
     loops = vtkPolyData()
@@ -69,13 +59,7 @@ def width(word: str) -> float:
 
 
 def union(parts: Sequence[tuple[Array, Indices]]) -> tuple[Array, Indices]:
-    """Return several sets of points with their triangles, such as words at their places, as one.
-
-    Parameters
-    ----------
-    parts : sequence of (ndarray, ndarray of int)
-        Points, shape (N, d), and the corners of triangles; one at least.
-    """
+    """Return several sets of points with their triangles, such as words at their places, as one."""
     starts = np.cumsum([0, *(len(points) for points, _ in parts)])
     ids = [ids + start for (_, ids), start in zip(parts, starts, strict=False)]
     return np.concatenate([points for points, _ in parts]), np.concatenate(ids)

@@ -40,18 +40,8 @@ def once(mesh: Dataset, name: str, compute: Callable[[], T], owner: vtkPolyData 
     """Return the result of a function of the points and cells of a surface, computed once.
 
     It is kept for any mesh of the same points and cells, until the points of the surface are
-    deleted, and nobody may change it.
-
-    Parameters
-    ----------
-    mesh : vtkDataSet
-        Surface; for another kind of mesh nothing is kept.
-    name : str
-        Name of the result.
-    compute : callable
-        Function without arguments that computes it of points and cells alone.
-    owner : vtkPolyData, optional
-        Surface in place of the mesh: its points bound the time.
+    deleted, and nobody may change it. For another kind of mesh nothing is kept; the points of
+    ``owner``, if any, bound the time.
     """
     if not isinstance(mesh, vtkPolyData):
         return compute()

@@ -23,12 +23,7 @@ _ADDRESS = re.compile(r" \(0x[0-9a-f]+\)| for request: vtkInformation.*| when as
 
 
 def first_line(error: Exception | str) -> str:
-    """Return the first line with words of a message.
-
-    Parameters
-    ----------
-    error : Exception or str
-    """
+    """Return the first line with words of a message."""
     return next((line.strip() for line in str(error).splitlines() if line.strip()), "no reason")
 
 
@@ -44,13 +39,7 @@ _OF_CODE = (
 
 
 def reason(error: BaseException) -> str:
-    """Return why a reader refuses a file, in words.
-
-    Parameters
-    ----------
-    error : BaseException
-        Error of the reader.
-    """
+    """Return why a reader refuses a file, in words."""
     text = first_line(str(error)) if str(error).strip() else ""
     kind = type(error).__name__
     if isinstance(error, UnicodeDecodeError):

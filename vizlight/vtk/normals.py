@@ -45,29 +45,17 @@ NEIGHBOURS = 12
 class Sided:
     """Normals of the points of a mesh, and the facts that tell which side of them is seen.
 
-    Attributes
-    ----------
-    vectors : ndarray, shape (n_points, n)
-        Normals: outward on closed pieces, in agreement with each other on others.
-    lean : ndarray of float32, shape (n_points,), or None
-        Sine of the largest angle between a normal and a face around its point, negative where the
-        surface is concave; see :meth:`leaning`. None: 0 everywhere.
-    open : ndarray of int, shape (n_points,), or int
-        1 for points of pieces with a border, or with faces that have no common side, as in a Klein
-        bottle: either side may be seen. From 2 on the number of such a piece that is a height
-        field; 0 for others.
-    sharp : float or ndarray
-        Share of edges that are creases, across which normals were averaged; where these are the
-        points of several blocks one of each, and so is ``inside``.
-    kept : bool
-        Whether the normals come from an earlier result.
-    computed : bool
-        Whether they are computed from the surface, not an array of the user.
-    inside : int or ndarray
-        Number of points of a volume that are not on its surface.
-    averted : ndarray of bool, or None
-        By the numbers of ``open``, the height fields that show the eye their back, where that is
-        known from a whole of which these points are a part; a single one says that none is open.
+    ``vectors`` are outward on closed pieces, in agreement with each other on others. ``lean`` is
+    the sine of the largest angle between a normal and a face around its point, negative where the
+    surface is concave; None is 0 everywhere, see :meth:`leaning`. ``open`` is 1 for points of
+    pieces with a border, or with faces that have no common side, as in a Klein bottle: either side
+    may be seen; from 2 on it is the number of such a piece that is a height field, and 0 for
+    others. ``sharp`` is the share of edges that are creases, across which normals were averaged,
+    and ``inside`` the number of points of a volume that are not on its surface, where these are the
+    points of several blocks one of each. ``kept`` normals come from an earlier result, ``computed``
+    ones from the surface, not an array of the user. ``averted`` are, by the numbers of ``open``,
+    the height fields that show the eye their back, where that is known from a whole of which these
+    points are a part; a single one says that none is open.
     """
 
     vectors: Array
@@ -180,16 +168,9 @@ class Sided:
 class Vote(NamedTuple):
     """Decision of the whole about the pieces of a part, see :mod:`vizlight.vtk.sides`.
 
-    Attributes
-    ----------
-    sign : ndarray, shape (count,)
-        1 or -1, by which the normals of the part are multiplied.
-    number : ndarray of int, shape (count,)
-        See :attr:`Sided.open`.
-    averted : ndarray of bool
-        See :attr:`Sided.averted`.
-    side : ndarray of int8, shape (n_points,), or None
-        See :attr:`SurfaceShape.side`; of the points of a mesh of cells that fill space.
+    ``sign`` is 1 or -1, by which the normals of the part are multiplied; ``number`` and ``averted``
+    are as :attr:`Sided.open` and :attr:`Sided.averted`, and ``side`` as that of SurfaceShape, of
+    the points of a mesh of cells that fill space.
     """
 
     sign: Array
@@ -257,11 +238,6 @@ def sided_normals(
     ``kept`` is a function of the mesh that returns normals of its surface which are known already,
     or None. ``vote`` is the decision of the whole, of which the mesh is a part, about its sides.
     ``block`` is the number of the block of each point, where the mesh is several.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the mesh has none, or an array does not fit.
     """
     vectors = given_normals(mesh, value, n)
     if vectors is None:
@@ -429,38 +405,18 @@ def computed_normals(
     """Return the normals of a mesh's outer surface, zero at points that are not on it.
 
     They are means by the corners of the faces around each point, see
-    :func:`~vizlight.vtk.corners.corner_normals`, in float32. They point outward on a closed
-    surface and on a connected piece that is nearly closed. Any other piece has no outside: its
-    normals are flipped together if on average they point away from the eye, or toward the
-    centroid of the piece. Points that slivers join, with a side of at most
-    :data:`~vizlight.vtk.corners.NEAR` of the longest, as isosurfaces through nodes of a grid
-    have them, have one normal, where their own are within
-    :data:`~vizlight.vtk.corners.SHARP` degrees of it.
+    :func:`~vizlight.vtk.corners.corner_normals`, in float32. They point outward on a closed surface
+    and on a connected piece that is nearly closed. Any other piece has no outside: its normals are
+    flipped together if on average they point away from the eye, or toward the centroid of the
+    piece. Points that slivers join, with a side of at most :data:`~vizlight.vtk.corners.NEAR` of
+    the longest, as isosurfaces through nodes of a grid have them, have one normal, where their own
+    are within :data:`~vizlight.vtk.corners.SHARP` degrees of it. Open pieces are turned to the eye
+    of ``view`` as a whole; with ``as_wound`` normals have the sides that the order of the corners
+    of each face gives them. ``sides`` asks for lean and share of sharp edges, ``vote`` is the
+    decision of the whole, of which this is a part, about the pieces, and ``block`` the number of
+    the block of each point, where the mesh is several that have nothing in common. Normals are kept
+    as long as the points of ``owner``, by default the mesh.
 
-    Parameters
-    ----------
-    mesh : vtkDataSet
-        Mesh with a surface.
-    view : View, optional
-        Eye to which open pieces are turned as a whole.
-    as_wound : bool
-        Whether the normals have the sides that the order of the corners of each face gives them.
-    sides : bool
-        Whether lean and share of sharp edges are found.
-    vote : Vote, optional
-        Decision of the whole, of which this is a part, about the pieces.
-    owner : vtkPolyData, optional
-        Surface: the normals are kept as long as its points; by default the mesh.
-    block : ndarray of int, shape (n_points,), optional
-        Number of the block of each point, where the mesh is several that have nothing in common.
-
-    Raises
-    ------
-    ValueError
-        If the mesh has no surface.
-
-    Notes
-    -----
     Normals of a surface with the defaults are computed once, see :func:`~vizlight.vtk.memory.once`,
     and may not be changed.
     """
@@ -615,13 +571,7 @@ def _of_map(mesh: Dataset, view: View | None) -> Sided | None:
 class Outer(NamedTuple):
     """The outer surface of a mesh.
 
-    Attributes
-    ----------
-    shape : SurfaceShape
-    surface : vtkPolyData
-        Its faces.
-    origin : ndarray of int, or None
-        Point of the mesh that each point of the surface is, None for a surface.
+    ``origin`` is the point of the mesh that each point of the surface is, None for a surface.
     """
 
     shape: orientation.SurfaceShape

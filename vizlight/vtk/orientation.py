@@ -39,14 +39,9 @@ SEARCHED, STEPS = 1 << 14, 32
 class Sums(NamedTuple):
     """Sums over each piece of a surface, which tell its sides; sums of parts add up.
 
-    Attributes
-    ----------
-    score : ndarray, shape (count,)
-        Sum of the agreement of the normals with the directions of a sheet.
-    total, area : ndarray, shape (count, 3) and (count,)
-        Area vectors of the faces, and their lengths.
-    volume : ndarray, shape (count,)
-        Six times the enclosed volume.
+    ``score`` sums the agreement of the normals with the directions of a sheet, ``total`` and
+    ``area`` the area vectors of the faces, and their lengths; ``volume`` is the enclosed one, times
+    6.
     """
 
     score: Array
@@ -62,14 +57,8 @@ class Sums(NamedTuple):
     def add(self, owner: Indices, corner: Array, across: Array, size: Array) -> None:
         """Add some faces.
 
-        Parameters
-        ----------
-        owner : ndarray of int, shape (n,)
-            Piece of each.
-        corner, across : ndarray, shape (3, n)
-            A corner, and the area vector.
-        size : ndarray, shape (n,)
-            Length of that.
+        ``owner`` is the piece of each, ``corner`` and ``across`` (3, n) are a corner and the area
+        vector, of the length ``size``.
         """
         # Six times the volumes of tetrahedra about the centroid: those of a closed surface add up
         # to what it encloses, by the divergence theorem.
@@ -242,13 +231,9 @@ class SurfaceShape:
     def survey(self, normals: Array) -> tuple[Sums, Array]:
         """Return the sums of a walk over the triangles, given the normals of the points.
 
-        Returns
-        -------
-        Sums
-            Sums over each piece, but for the score, which is 0.
-        ndarray of float32, shape (n_points,)
-            Sine of the largest angle between the normal of each point and a face around it, 1 from
-            a right angle on; negative where the surface is concave.
+        The score is left 0. The second result is the sine of the largest angle between the normal
+        of each point and a face around it, 1 from a right angle on; negative where the surface is
+        concave.
         """
         piece, n = self.piece, len(self.points)
         sums = Sums.zero(self.count)
@@ -341,18 +326,9 @@ def _directions(points: Raw, triangles: Indices) -> tuple[Array, Bools, list[Arr
 def lean_of(surface: vtkPolyData, normals: Array) -> Array:
     """Return the sine of the largest angle between normals and the faces around each point.
 
-    Parameters
-    ----------
-    surface : vtkPolyData
-        Faces, wound in any way.
-    normals : ndarray, shape (n_points, 3)
-        Normals of any length and of either side.
-
-    Returns
-    -------
-    ndarray of float32, shape (n_points,)
-        1 from a right angle on, and where neighbouring faces are wound against each other; 0 where
-        a normal is not finite.
+    Faces may be wound in any way, and normals be of any length and of either side. The sine is 1
+    from a right angle on, and where neighbouring faces are wound against each other; 0 where a
+    normal is not finite.
     """
     rows, points = triangles(surface), places(surface)
     # Row by row in memory, of which single rows are taken below.
@@ -439,23 +415,11 @@ def sides_of(
 ) -> Indices:
     """Return which pieces have a border, and which of these are height fields.
 
-    Parameters
-    ----------
-    vectors : ndarray, shape (n_points, 3)
-        Normals, zero or not finite where a point has none.
-    piece : ndarray of int, shape (n_points,), or None
-        Piece of each point; None for a single one.
-    border : ndarray of bool, shape (count,)
-        Pieces that may be seen from either side.
-    total : ndarray, shape (count, 3), optional
-        Sum of all normals of each piece, where these are some.
-
-    Returns
-    -------
-    ndarray of int, shape (count,)
-        0 for pieces without a border, 1 for those with one, and from 2 on a number of its own for
-        each that is a height field: its normals lie within a right angle of an axis, or of a
-        direction that a short search finds.
+    Normals are zero or not finite where a point has none, ``piece`` is None for a single one,
+    ``border`` masks pieces that may be seen from either side, and ``total`` is the sum of all
+    normals of each piece, where these are some. The result is 0 for pieces without a border, 1 for
+    those with one, and from 2 on a number of its own for each that is a height field: its normals
+    lie within a right angle of an axis, or of a direction that a short search finds.
     """
     side: Indices = border.astype(np.intp)
     if border.any():

@@ -25,16 +25,8 @@ from vizlight.vtk.normals import Sided, Turned, Vote, computed_normals, sided_no
 class Part(NamedTuple):
     """Inputs of the light of one mesh, or of several at once.
 
-    Attributes
-    ----------
-    inputs : ShadingInputs
-    options : LightOptions
-    sided : Sided or None
-        Normals, None without.
-    numbers : list of int
-        Numbers of the meshes.
-    ends : ndarray of int
-        First point of each of several meshes, and the end of the last.
+    ``numbers`` are those of the meshes, and ``ends`` has the first point of each of several, and
+    the end of the last.
     """
 
     inputs: ShadingInputs
@@ -75,11 +67,6 @@ def part_of(
 
     With ``vote`` it is a part of a whole, see :mod:`vizlight.vtk.sides`, and with ``block`` it is
     several, see :func:`parts_of`. Without a view both sides of an open surface are lit alike.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an array is missing or does not fit, or options contradict each other.
     """
     with _check.in_block(path):
         points = points_of(mesh, options.positions)
@@ -148,13 +135,7 @@ def _some(part: Part, batch: Batch, chosen: Bools, *, two_sided: bool) -> Part:
 
 
 def share_of(mesh: Dataset, name: str | None, path: str = "") -> Array | None:
-    """Return the point array of one component that is the share of the ambient light.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the mesh has no such array.
-    """
+    """Return the point array of one component that is the share of the ambient light."""
     if name is None:
         return None
     array = named(mesh.GetPointData(), name)

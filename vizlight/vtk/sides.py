@@ -29,25 +29,13 @@ CLEAR = 0.8
 class PartFacts(NamedTuple):
     """Facts of a part of a surface; its pieces are those of :class:`.orientation.SurfaceShape`.
 
-    Attributes
-    ----------
-    open : ndarray of bool, shape (count,)
-        Pieces with a border, or with faces that have no common side.
-    far : ndarray, shape (count, 6, 2)
-        Coordinate of the outermost point of each piece along x, -x, y and so on, minus infinity
-        without one, and that component of its normal.
-    shown : ndarray, shape (count,)
-        Sum of :func:`~vizlight.vtk.normals.facing_of`.
-    total : ndarray, shape (count, 3)
-        Sum of the normals of each piece.
-    field : ndarray of bool, shape (count,)
-        Pieces that are height fields, as far as the part knows.
-    normals, of : ndarray, shape (m, 3), and ndarray of int, shape (m,)
-        The outermost normals of each piece, and their pieces.
-    places, at, along : ndarray, shape (b,), (b,) and (b, 3)
-        Numbers of the places of points that other parts have too, their pieces and normals.
-    edges : ndarray of int, shape (4,)
-        See :attr:`.orientation.SurfaceShape.edges`.
+    ``open`` pieces have a border, or faces that have no common side. ``far`` (count, 6, 2) is the
+    coordinate of the outermost point of each piece along x, -x, y and so on, minus infinity without
+    one, and that component of its normal; ``shown`` the sum of
+    :func:`~vizlight.vtk.normals.facing_of`, ``total`` that of the normals, and ``field`` says that
+    a piece is a height field, as far as the part knows. ``normals`` are the outermost ones ``of``
+    each piece; ``places``, ``at`` and ``along`` the numbers of the places of points that other
+    parts have too, their pieces and normals. ``edges`` are those of SurfaceShape.
     """
 
     open: Bools
@@ -66,14 +54,8 @@ class PartFacts(NamedTuple):
 class Undecided(NamedTuple):
     """Normals of a part on sides that the whole has yet to decide.
 
-    Attributes
-    ----------
-    vectors, lean : ndarray, shape (n_points, 3) and (n_points,)
-        See :class:`.normals.Sided`.
-    piece : ndarray of int, shape (n_points,)
-        Piece of each point.
-    sharp : float
-        Share of edges that are creases.
+    ``vectors`` and ``lean`` are as of :class:`.normals.Sided`; ``sharp`` is the share of edges that
+    are creases.
     """
 
     vectors: Array
@@ -104,18 +86,9 @@ def look(
 ) -> PartFacts | None:
     """Return the facts of a part of a surface, None where it has no surface.
 
-    Parameters
-    ----------
-    mesh : vtkDataSet
-        The part, with the cells of other parts that share a point with it.
-    ghosts : ndarray, shape (n_points,)
-        Share of the cells around each point that belong to other parts.
-    value : str or None
-        Name of normals; with such, or with normals that the mesh has, the surface is one piece.
-    view : View or None
-        Eye that sees it.
-    keep : callable, optional
-        Function that takes the normals of a surface.
+    The mesh has the cells of other parts that share a point with it, and ``ghosts`` is the share of
+    the cells around each point that belong to these. With a name of normals, or with normals that
+    the mesh has, the surface is one piece; ``keep`` takes the normals of a surface.
     """
     vectors_in = given_normals(mesh, value, 3)
     wound = wound_normals(mesh, side=side_of(ghosts))

@@ -22,18 +22,10 @@ PARTS = 16
 class SurfaceTopology(NamedTuple):
     """Connected pieces of the points of a surface, and how its triangles are wound.
 
-    Attributes
-    ----------
-    piece : ndarray of int, shape (n_points,)
-        Number of the piece of each point; coincident points are in one piece.
-    open : ndarray of bool, shape (n_pieces,)
-        Whether a piece has an edge of one triangle only.
-    alike : bool
-        Whether all edges have one triangle, or two that are wound alike.
-    folded : list of ndarray of int
-        Ends of edges, by place, at which two triangles are wound against each other.
-    same : ndarray of int, shape (n_points,), or None
-        First point at the place of each point; None if all places differ.
+    Coincident points are in one piece; an ``open`` one has an edge of one triangle only. ``alike``:
+    all edges have one triangle, or two that are wound alike; ``folded`` are ends of edges, by
+    place, at which two triangles are wound against each other, and ``same`` is the first point at
+    the place of each point, None if all places differ.
     """
 
     piece: Indices
@@ -46,14 +38,9 @@ class SurfaceTopology(NamedTuple):
 class SortedEdges(NamedTuple):
     """Some edges of triangles, sorted by their ends; edges of several triangles stand together.
 
-    Attributes
-    ----------
-    keys : ndarray of int64, shape (n,)
-        Lower end, then the upper end in the lower 32 bits; see :func:`ends_of`.
-    places : ndarray of int, shape (n,)
-        Corner at which an edge begins, among all corners.
-    forward : ndarray of bool, shape (n,)
-        Whether it begins at its lower end.
+    ``keys`` have the lower end, then the upper end in the lower 32 bits, see :func:`ends_of`;
+    ``places`` are the corners at which edges begin, among all corners, ``forward`` where this is
+    the lower end.
     """
 
     keys: NDArray[np.int64]
@@ -74,14 +61,7 @@ def sorted_edges(
 ) -> Iterator[SortedEdges]:
     """Yield the edges of triangles by ranges of their lower ends; edges of no length are left out.
 
-    Parameters
-    ----------
-    corners : ndarray of int, shape (n, 3)
-        Corners of the triangles.
-    count : int
-        Number of points, below 2^31.
-    same : ndarray of int, optional
-        Point that stands for each point.
+    ``count`` is the number of points, below 2^31, and ``same`` the point that stands for each.
     """
     # Sorted in ranges of their lower ends: a sort of all edges at once would take memory beyond
     # the bound of a filter.
@@ -223,14 +203,8 @@ def double_cover(a: Indices, b: Indices, count: int) -> tuple[Indices, Indices]:
     """Return the first thing that pairs connect each with, as it is and turned over.
 
     Each thing stands twice, the second time turned over, with its number beyond all others. One
-    that is connected with its own turned copy has no sides.
-
-    Parameters
-    ----------
-    a, b : ndarray of int, shape (n,)
-        Pairs of things that agree, and of one and the turned copy of another.
-    count : int
-        Number of things.
+    that is connected with its own turned copy has no sides. ``a`` and ``b`` are pairs of things
+    that agree, and of one and the turned copy of another.
     """
     # If one agrees with another as it is, so do their turned copies.
     a, b = np.append(a, a + count), np.append(b, (b + count) % (2 * count))
@@ -262,17 +236,8 @@ def are_closed(surface: vtkPolyData, block: Indices | None = None) -> tuple[Bool
     """Return whether all edges have an even number of faces, and whether these are wound alike.
 
     Places make an edge. The numbers of the edges, made from the coordinates of their ends, cancel
-    by pairs, and with a sign where the two faces are wound alike.
-
-    Parameters
-    ----------
-    surface : vtkPolyData
-    block : ndarray of int, shape (n_points,), optional
-        Number of the block of each point. Default: all are in one, and the result is kept.
-
-    Returns
-    -------
-    closed, alike : ndarray of bool, shape (n_blocks,)
+    by pairs, and with a sign where the two faces are wound alike. Masks are of blocks; without
+    ``block`` all points are in one, and the result is kept.
     """
     if block is None:
         every = np.zeros(surface.GetNumberOfPoints(), dtype=np.intp)

@@ -62,13 +62,7 @@ def save_graphic(
 ) -> Path:
     """Write the picture of a plotter as an SVG or PDF file; see ``plotter.vizlight.save_graphic``.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    path : path
-    live_of : callable
-        Function that returns the live light of an actor, or None.
-    error : float, optional
+    ``live_of`` returns the live light of an actor, or None.
     """
     path = check_output(path, VECTORS)
     if error is not None:

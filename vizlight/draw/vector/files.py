@@ -50,18 +50,8 @@ class Polyline:
 class Words:
     """Lines of text.
 
-    Parameters
-    ----------
-    lines : sequence of str
-    place : (float, float)
-        Place in pixels from the upper left.
-    size : float
-        Size of the letters in pixels.
-    color : (r, g, b)
-    across : {0, 0.5, 1}
-        Share of the width of the text at the left of the place.
-    above : {0, 0.5, 1}
-        Share of the height of the text above the place.
+    The place is in pixels from the upper left, ``size`` that of the letters in pixels; ``across``
+    and ``above``, 0, 0.5 or 1, are the shares of the text at the left of the place and above it.
     """
 
     lines: Sequence[str]
@@ -106,16 +96,8 @@ Item: TypeAlias = "Fill | Polyline | Words | Picture | Plate"
 class Sheet:
     """Items in the order of painting.
 
-    Parameters
-    ----------
-    size : (int, int)
-        Width and height in pixels.
-    background : (r, g, b)
-        Colour from 0 to 1.
-    groups : dict
-        Items of each group, by its name.
-    words : str
-        Notes for a reader of the figure.
+    The size is in pixels, the background from 0 to 1; ``groups`` has items by the name of each, and
+    ``words`` are notes for a reader of the figure.
     """
 
     size: tuple[int, int]
@@ -125,23 +107,13 @@ class Sheet:
 
 
 def rgb_of(color: Array) -> Color:
-    """Return a colour of one or three channels from 0 to 255 as three from 0 to 1.
-
-    Parameters
-    ----------
-    color : ndarray, shape (c,)
-    """
+    """Return a colour of one or three channels from 0 to 255 as three from 0 to 1."""
     red, green, blue = np.broadcast_to(color, 3) / 255
     return float(red), float(green), float(blue)
 
 
 def svg_of(sheet: Sheet) -> str:
-    """Return a sheet as the text of an SVG file.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    """
+    """Return a sheet as the text of an SVG file."""
     width, height = sheet.size
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
@@ -242,12 +214,7 @@ def _hex(color: Color) -> str:
 
 
 def figure_of(sheet: Sheet) -> Figure:
-    """Return a sheet as a figure of matplotlib, of the same size in inches.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    """
+    """Return a sheet as a figure of matplotlib, of the same size in inches."""
     from matplotlib.figure import Figure
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
@@ -297,12 +264,7 @@ def _closed(item: Fill) -> list[Array]:
 
 
 def pdf_of(sheet: Sheet) -> bytes:
-    """Return a sheet as the bytes of a PDF file, with its words as text.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    """
+    """Return a sheet as the bytes of a PDF file, with its words as text."""
     from matplotlib import rc_context
 
     data = io.BytesIO()

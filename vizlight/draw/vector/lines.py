@@ -49,16 +49,8 @@ ACROSS = (-0.35, 0.0, 0.35)
 class Lines(NamedTuple):
     """Lines that an actor draws.
 
-    Attributes
-    ----------
-    renderer : vtkRenderer
-    actor : vtkActor
-    style : Style
-        How they are drawn.
-    width : float
-        Width in pixels, where they have no diameter.
-    colors : ndarray, shape (N, 3), or None
-        Channels of each point from 0 to 255, where no light changes them.
+    ``width`` is in pixels, where they have no diameter; ``colors`` are channels of each point from
+    0 to 255, where no light changes them.
     """
 
     renderer: vtkRenderer
@@ -71,25 +63,9 @@ class Lines(NamedTuple):
 class Course(NamedTuple):
     """Places along lines, at most a pixel apart.
 
-    Attributes
-    ----------
-    place : ndarray, shape (n, 2)
-        Pixels from the upper left.
-    distance : ndarray, shape (n,)
-        Distance from the plane of the eye.
-    line : ndarray of int, shape (n,)
-        Number of the line.
-    end : ndarray of bool, shape (n,)
-        Whether the line ends at the point.
-    width : ndarray, shape (n,)
-        Width in pixels.
-    seen : ndarray of bool, shape (n,)
-    color : ndarray, shape (n, c)
-        Channels from 0 to 255.
-    halo : ndarray, shape (n,)
-        Width of the band on each side in pixels; 0 where none is seen.
-    around : ndarray, shape (n, 3)
-        Colour of the band, from 0 to 255.
+    ``place`` (n, 2) is in pixels from the upper left, ``distance`` from the plane of the eye;
+    ``end`` is where a ``line`` ends. ``width`` and ``halo``, the band on each side, 0 where none is
+    seen, are in pixels, ``color`` and that of the band, ``around``, from 0 to 255.
     """
 
     place: Array
@@ -106,11 +82,7 @@ class Course(NamedTuple):
 def lines_of(plotter: pv.BasePlotter, live_of: Callable[[vtkActor], Live | None]) -> list[Lines]:
     """Return the lines of a plotter that can be strokes: all that shaders of others do not widen.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    live_of : callable
-        Function that returns the live light of an actor, or None.
+    ``live_of`` returns the live light of an actor, or None.
     """
     lines = []
     for renderer in plotter.renderers:
@@ -155,15 +127,8 @@ def _unlit_colors(actor: vtkActor, mesh: pv.PolyData, live: Live | None) -> Arra
 def course_of(lines: Lines, samples: Samples, bare: Samples, scale: int) -> Course:
     """Return the course of lines in a picture that shows them.
 
-    Parameters
-    ----------
-    lines : Lines
-    samples : Samples
-        The whole picture, at the size at which the renderer draws now.
-    bare : Samples
-        The same without lines.
-    scale : int
-        Samples for each pixel, along a side.
+    ``samples`` are of the whole picture, at the size at which the renderer draws now, with
+    ``scale`` for each pixel along a side, and ``bare`` ones of the same without lines.
     """
     renderer, style = lines.renderer, lines.style
     camera = renderer.GetActiveCamera()
@@ -281,13 +246,7 @@ def _distance(depth: Array, camera: vtkCamera) -> Array:
 def _places(corners: Array, number: Indices, scale: int) -> tuple[Indices, Array, Bools]:
     """Return places along lines at most a pixel apart, and which of them are ends.
 
-    Returns
-    -------
-    start : ndarray of int
-        Corner before each place.
-    along : ndarray
-        Share of the way to the next corner.
-    ends : ndarray of bool
+    They have the corner before each, and the share of the way to the next corner.
     """
     joined = (number[:-1] == number[1:]) & (corners[:-1, 3] > 0) & (corners[1:, 3] > 0)
     segment = np.flatnonzero(joined)
@@ -342,13 +301,8 @@ def strokes_of(courses: Sequence[Course], error: float) -> tuple[list[Polyline |
     """Return strokes from the farthest to the nearest, and the largest error of their colours.
 
     A visible piece of a line has one halo, and over it a stroke for each run of like colours; those
-    of several widths are outlines. Pieces of a layer that look alike are one path.
-
-    Parameters
-    ----------
-    courses : sequence of Course
-    error : float
-        Largest difference of a colour, in 1/255.
+    of several widths are outlines. Pieces of a layer that look alike are one path. The error is the
+    largest difference of a colour, in 1/255.
     """
     if not any(np.any(each.seen) for each in courses):
         return [], 0.0

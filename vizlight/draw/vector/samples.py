@@ -43,12 +43,8 @@ ROUNDING = 0.51
 class Samples(NamedTuple):
     """Colours and depths of the picture of a plotter.
 
-    Attributes
-    ----------
-    colors : ndarray of float32, shape (rows, columns, c)
-        Channels from 0 to 255, from the upper left; one where all three are equal everywhere.
-    depth : ndarray of float32, shape (rows, columns)
-        Depth from 0, near, to 1, behind all.
+    Channels are from 0 to 255, from the upper left; one where all three are equal everywhere. Depth
+    is from 0, near, to 1, behind all.
     """
 
     colors: Array
@@ -56,24 +52,14 @@ class Samples(NamedTuple):
 
 
 def actors_of(renderer: vtkRenderer) -> list[vtkActor]:
-    """Return the visible actors in space of a renderer.
-
-    Parameters
-    ----------
-    renderer : vtkRenderer
-    """
+    """Return the visible actors in space of a renderer."""
     actors = items(renderer.GetActors())
     return [actor for actor in actors if isinstance(actor, vtkActor) and actor.GetVisibility()]
 
 
 @contextlib.contextmanager
 def without(props: Iterable[vtkProp]) -> Iterator[None]:
-    """Hide props while a plotter draws.
-
-    Parameters
-    ----------
-    props : iterable of vtkProp
-    """
+    """Hide props while a plotter draws."""
     visible = [prop for prop in props if prop.GetVisibility()]
     for prop in visible:
         prop.SetVisibility(False)
@@ -88,13 +74,7 @@ def without(props: Iterable[vtkProp]) -> Iterator[None]:
 def enlarged(plotter: pv.BasePlotter, scale: int, hidden: Sequence[vtkProp]) -> Iterator[None]:
     """Let a plotter draw several samples per pixel, each of one colour, and without some props.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    scale : int
-        Samples for each pixel, along a side.
-    hidden : sequence of vtkProp
-        Props that are not drawn.
+    ``scale`` is the number of samples for each pixel along a side.
     """
     window = plotter.render_window
     assert window is not None
@@ -132,11 +112,7 @@ def enlarged(plotter: pv.BasePlotter, scale: int, hidden: Sequence[vtkProp]) -> 
 def samples_of(plotter: pv.BasePlotter, *, fine: bool = True) -> Samples:
     """Return the present picture of a plotter, sample by sample.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-    fine : bool, default: True
-        Whether channels have 24 bits, for each of which the picture is drawn once more.
+    With ``fine`` channels have 24 bits, for each of which the picture is drawn once more.
     """
     window = plotter.render_window
     assert window is not None

@@ -25,16 +25,7 @@ LOW = frozenset("gjpqy,;()[]{}Q_/|@")
 def words_of(plotter: pv.BasePlotter) -> tuple[list[Item], list[vtkProp]]:
     """Return the words of a plotter, with the bars that they belong to.
 
-    Parameters
-    ----------
-    plotter : pyvista.Plotter
-        Plotter that was drawn at its size.
-
-    Returns
-    -------
-    list of Item
-    list of vtkProp
-        Props that they stand for.
+    The plotter was drawn at its size; the props are those that they stand for.
     """
     words: list[Item] = []
     props: list[vtkProp] = []

@@ -111,36 +111,13 @@ def cut(
 ) -> tuple[Bands, Indices]:
     """Cut triangles along contours.
 
-    Parameters
-    ----------
-    points : ndarray, shape (P, 3)
-        Positions.
-    triangles : ndarray of int, shape (T, 3)
-        Indices of corners.
-    values : ndarray, shape (T, 3) or (P,)
-        Luminance at the corners, which may differ between both sides of a crease, or at the points.
-    steps : LuminanceSteps
-        Luminance of contours and bands.
-    patch : ndarray of int, shape (T,), optional
-        Index of the smooth part that each triangle belongs to. The triangles at an edge that
-        belong to one patch share their contour points. Default: one patch.
-    place : callable, optional
-        Function ``place(a, b, t)`` that returns the points on the surface at the fraction t of the
-        edges from a to b. Default: points on the chord.
-    luminance : callable, optional
-        Function ``luminance(a, b, t, patch)`` that returns the luminance at fractions t, shape
-        (N, m), of N edges. With it, contour points are found by bracketing, else by linear
-        interpolation.
+    ``values``, of the corners (T, 3) or the points (P,), may differ between both sides of a crease.
+    ``patch`` is the smooth part of each triangle; only triangles of one patch share contour points
+    at an edge. ``place(a, b, t)`` returns the points on the surface at fractions t of edges,
+    default on the chord, and ``luminance(a, b, t, patch)`` their luminance, t of shape (N, m):
+    with it contour points are bracketed, else interpolated. The bands have NaN as the error; the
+    second result is the triangle each polygon was cut from.
 
-    Returns
-    -------
-    bands : Bands
-        Bands, with NaN as the error.
-    triangle : ndarray of int, shape (C,)
-        Index of the triangle that each polygon was cut from.
-
-    Notes
-    -----
     A value in (edges[k-1], edges[k]] belongs to band k. Contour points keep the order of the levels
     along an edge even where the luminance is not monotone, so that each triangle is cut into
     one polygon per band. All triangles at an edge share all its contour points as corners, from
@@ -176,19 +153,9 @@ def assembled(
 ) -> Bands:  # fmt: skip
     """Return bands with those of the points that polygons use.
 
-    Parameters
-    ----------
-    points : sequence of ndarray, shape (P, 3)
-        Positions, one array after the other.
-    cells : tuple of ndarray of int
-        Number of corners of each polygon, all corners, and band and patch of each polygon. The
-        corners are numbered anew in place.
-    lines : (ndarray of int, shape (S, 2), ndarray, shape (S,))
-        Ends of contour segments, and their luminance.
-    steps : LuminanceSteps
-        Luminance of contours and bands.
-    error : float
-        Largest luminance error.
+    ``cells`` has the number of corners of each polygon, all corners, which are numbered anew in
+    place, and the band and the patch of each; ``lines`` the ends (S, 2) of segments and their
+    luminance.
     """
     size, corners, band, patch = cells
     counts = [len(part) for part in points]

@@ -34,12 +34,8 @@ BROAD = 1.0
 class Face(NamedTuple):
     """All that has one colour.
 
-    Attributes
-    ----------
-    color : ndarray, shape (c,)
-    rings : list of ndarray, shape (n, 2)
-        Closed rings in pixels from the upper left, the first point not repeated. The inside is at
-        the right hand, so that holes run the other way.
+    ``rings`` are closed, of shape (n, 2), in pixels from the upper left, the first point not
+    repeated. The inside is at the right hand, so that holes run the other way.
     """
 
     color: Array
@@ -49,22 +45,11 @@ class Face(NamedTuple):
 def faces(palette: Palette, samples: Array, scale: int, tolerance: float = 0.0) -> Iterator[Face]:
     """Yield the faces of samples in the order in which they are painted.
 
-    Parameters
-    ----------
-    palette : Palette
-        Colours of the samples.
-    samples : ndarray, shape (rows, columns, c)
-    scale : int
-        Samples for each pixel, along a side.
-    tolerance : float
-        Difference of colours up to which a border may lie where samples have others than it.
-
-    Yields
-    ------
-    Face
-        Background has none. A border that is seen is within 0.1 pixels of its place between
-        samples, at which colours that change steadily are crossed linearly; where two surfaces meet
-        it is half way between two samples.
+    ``samples`` has the shape (rows, columns, c), with ``scale`` samples for each pixel along a
+    side; ``tolerance`` is the difference of colours up to which a border may lie where samples have
+    others than it. Background has no face. A border that is seen is within 0.1 pixels of its place
+    between samples, at which colours that change steadily are crossed linearly; where two surfaces
+    meet it is half way between two samples.
     """
     if not np.any(palette.labels):
         return

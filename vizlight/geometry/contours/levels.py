@@ -37,19 +37,8 @@ MIXED = 0.9
 def levels(palette: Palette, samples: Array, scale: int, tolerance: float = 0.0) -> Iterator[Face]:
     """Yield the areas of samples in the order in which they are painted, the background last.
 
-    Parameters
-    ----------
-    palette : Palette
-        Colours of the samples, from dark to light.
-    samples : ndarray, shape (rows, columns, 1)
-    scale : int
-        Samples for each pixel, along a side.
-    tolerance : float
-        Difference from a level that samples may have at its border.
-
-    Yields
-    ------
-    Face
+    As :func:`~vizlight.geometry.contours.faces.faces`, for samples of one channel and colours from
+    dark to light.
     """
     if not np.any(palette.labels):
         return

@@ -32,16 +32,9 @@ JUMP = 4.0
 class Palette(NamedTuple):
     """Colours of faces.
 
-    Attributes
-    ----------
-    centres : ndarray, shape (K, c)
-        Colours; their bisectors are the borders of faces. The first is the background's.
-    colors : ndarray, shape (K, c)
-        Colours in which faces are painted: the middle of the samples of each.
-    labels : ndarray of int32, shape (rows, columns)
-        Number of the colour of each sample.
-    error : float
-        Largest difference of a sample's channel from the colour of its face.
+    The bisectors of the ``centres`` (K, c), the background's first, are the borders of faces, which
+    are painted in ``colors``, the middle of the samples of each; ``labels`` has the number of the
+    colour of each sample, and ``error`` is the largest difference of a channel from it.
     """
 
     centres: Array
@@ -55,22 +48,9 @@ def palette_of(
 ) -> Palette:
     """Return a few colours such that each sample is near one of them.
 
-    Parameters
-    ----------
-    samples : ndarray of float32, shape (rows, columns, c)
-        Channels; samples that equal the background are background.
-    background : ndarray, shape (c,)
-    error : float
-        Largest difference of a channel, in the unit of the samples.
-    scale : int
-        Samples for each pixel, along a side.
-    shown : ndarray of bool, shape (rows, columns), optional
-        Mask of the samples that are not background. Default: those that differ from it.
-
-    Returns
-    -------
-    Palette
-        Colours from dark to light; equal samples keep their colour exactly.
+    ``error`` is the largest difference of a channel, in the unit of the samples; ``shown`` masks
+    the samples that are not background, by default those that differ from it. Colours are from dark
+    to light; equal samples keep their colour exactly.
     """
     rows, columns, channels = samples.shape
     flat = samples.reshape(-1, channels)
@@ -103,11 +83,7 @@ def palette_of(
 def nearest_colors(samples: Array, error: float) -> tuple[Array, Indices]:
     """Return colours such that each sample is near one of them, and the index of that colour.
 
-    Parameters
-    ----------
-    samples : ndarray, shape (N, c)
-    error : float
-        Largest difference of a channel.
+    ``error`` is the largest difference of a channel.
     """
     some, count = np.unique(samples[::FEWER], axis=0, return_counts=True)
     common = np.argsort(-count, kind="stable")[:MOST_FLAT]

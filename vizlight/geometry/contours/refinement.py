@@ -51,34 +51,14 @@ def draw(
 ) -> Bands:  # fmt: skip
     """Return the bands of a luminance on the surfaces of a solid.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        Mesh of a solid. Its triangles are split where the luminance is not linear.
-    luminance : callable
-        Function ``luminance(points, normals)`` of points on the exact surfaces, in the unit of the
-        solid, and their exact outward normals.
-    levels : int, float or sequence of float
-        Steps of luminance, as for :func:`vizlight.geometry.contours.spacing.steps`.
-    low : float, optional
-        Luminance of points without light. Default: the lowest luminance found.
-    progress : callable, optional
-        Function that is called after each round with the share of triangles that keep the error.
+    The mesh is split where the luminance is not linear. ``luminance(points, normals)`` takes points
+    on the exact surfaces, in the unit of the solid, and their outward normals; ``low`` is that of
+    points without light, by default the lowest. ``progress`` takes the share of triangles that keep
+    the error after each round. Bands are closed if the mesh is; their error is measured on the
+    exact surface, at the centre of each polygon and at three points of each of its edges. A warning
+    is given where an allowed error is not kept within 20 rounds of refinement, 1.5 million
+    triangles and 300 thousand polygons.
 
-    Returns
-    -------
-    Bands
-        Bands, closed if the mesh is. ``error`` is measured on the exact surface, at the centre of
-        each polygon and at three points of each of its edges.
-
-    Warns
-    -----
-    UserWarning
-        If an allowed error is not kept within 20 rounds of refinement, 1.5 million triangles and
-        300 thousand polygons.
-
-    Notes
-    -----
     Contour points are found by bracketing and lie on the exact surface, at creases on both
     surfaces; contours are chords between them.
     """
@@ -96,18 +76,7 @@ def refine(
 ) -> Bands:  # fmt: skip
     """Return the bands of a lit surface, refined until they keep the allowed error.
 
-    Parameters
-    ----------
-    surface : LitTriangles
-        Lit triangles, which are split in place.
-    levels, low, progress
-        Steps of luminance, luminance without light, and function of the progress, as for
-        :func:`draw`.
-
-    Returns
-    -------
-    Bands
-        Bands with the measured error.
+    Arguments are those of :func:`draw`; the error of the bands is measured.
     """
     steps = _settled(surface, levels, low)
     error, pieces = np.empty(0), np.empty(0, np.intp)
@@ -186,17 +155,9 @@ def _settled(surface: LitTriangles, levels: Levels, low: float | None) -> Lumina
 class LitTriangles:
     """Triangles with a luminance that can be cut into bands and refined.
 
-    Parameters
-    ----------
-    points : ndarray, shape (P, 6) or (P, more)
-        Positions, unit normals and other values, all interpolated linearly along edges.
-    triangles : ndarray of int, shape (T, 3)
-        Indices of corners.
-    luminance : callable
-        Function ``luminance(points, normals)``, which accepts normals of any length.
-    lit : ndarray of bool, shape (P,)
-        Mask of the points that could be lit. The luminance of other points is discontinuous, and
-        their triangles are not refined.
+    ``points`` (P, 6 or more) are positions, unit normals and other values, interpolated linearly
+    along edges; ``luminance(points, normals)`` accepts normals of any length. The luminance of
+    points that are not ``lit`` is discontinuous, and their triangles are not refined.
     """
 
     #: Smooth part that each triangle belongs to.

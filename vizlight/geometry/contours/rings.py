@@ -41,14 +41,8 @@ AROUND = 9
 class Rings(NamedTuple):
     """Rings between samples, one after the other.
 
-    Attributes
-    ----------
-    area : ndarray of int, shape (n,)
-        Number of the area inside.
-    inner, outer : ndarray of int, shape (n,)
-        Samples inside and outside, between which a vertex lies.
-    starts : ndarray of int, shape (r + 1,)
-        First vertex of each ring, and the end.
+    ``area`` is the number of the area inside, ``inner`` and ``outer`` are the samples between which
+    a vertex lies, ``starts`` has the first vertex of each ring, and the end.
     """
 
     area: Indices
@@ -58,12 +52,7 @@ class Rings(NamedTuple):
 
 
 def squares(labels: NDArray[np.int32]) -> tuple[Indices, NDArray[np.int32]]:
-    """Return the upper left samples of squares of several labels, and the four labels of each.
-
-    Parameters
-    ----------
-    labels : ndarray of int32, shape (rows, columns)
-    """
+    """Return the upper left samples of squares of several labels, and the four labels of each."""
     corner = labels[:-1, :-1], labels[:-1, 1:], labels[1:, 1:], labels[1:, :-1]
     mixed = (corner[0] != corner[1]) | (corner[1] != corner[2]) | (corner[2] != corner[3])
     row, column = np.nonzero(mixed)
@@ -73,16 +62,8 @@ def squares(labels: NDArray[np.int32]) -> tuple[Indices, NDArray[np.int32]]:
 def traced(at: Indices, area: Indices, inside: Bools, labels: NDArray[np.int32]) -> Rings:
     """Return the rings around areas.
 
-    Parameters
-    ----------
-    at : ndarray of int, shape (n,)
-        Upper left samples of squares, each as often as borders of areas pass it.
-    area : ndarray of int, shape (n,)
-        Number of the area.
-    inside : ndarray of bool, shape (n, 4)
-        Mask of the corners that are of the area.
-    labels : ndarray of int32, shape (rows, columns)
-        Samples.
+    ``at`` has the upper left samples of squares, each as often as borders of areas pass it,
+    ``area`` the number of the area, and ``inside`` (n, 4) masks the corners that are of it.
     """
     size, width = labels.size, labels.shape[1]
     code = inside @ np.array([1, 2, 4, 8])
@@ -110,14 +91,8 @@ def vertices(
 
     The difference of the squared distances from the colours of both sides is linear in a colour.
 
-    Parameters
-    ----------
-    rings : Rings
-    samples : ndarray, shape (rows, columns, c)
-    mine, its : ndarray, shape (n, c)
-        Colours of the areas inside and outside.
-    jump : float
-        Difference of a channel above which two samples are of two surfaces.
+    ``mine`` and ``its`` are the colours (n, c) of the areas inside and outside; samples that differ
+    by more than ``jump`` in a channel are of two surfaces.
     """
     width = samples.shape[1]
     flat = samples.reshape(-1, samples.shape[2])
@@ -140,20 +115,9 @@ def beneath(
 ) -> tuple[Array, Array]:  # fmt: skip
     """Return vertices in samples, moved beneath areas that cover them, and distances in pixels.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-    starts : ndarray of int, shape (r + 1,)
-        First vertex of each ring, and the end.
-    labels : ndarray of int32, shape (rows, columns)
-    cover : ndarray of int, shape (n,)
-        Least label that covers each vertex; 0 where it is seen.
-    reaches : sequence of float
-        Distances in pixels to the inside, or below 0 to the outside, tried from the first.
-    parts : sequence of float
-        Parts of a distance at which labels are compared.
-    scale : int
-        Samples for each pixel, along a side.
+    ``cover`` is the least label that covers each vertex, 0 where it is seen; ``reaches`` are
+    distances in pixels to the inside, or below 0 to the outside, tried from the first, and labels
+    are compared at ``parts`` of a distance.
     """
     span = np.maximum(np.minimum(np.diff(starts), 4 * scale) // 3, 1)
     way = points[shifted(starts, span)] - points[shifted(starts, -span)]
@@ -181,14 +145,7 @@ def beneath(
 def corners_of(points: Array, starts: Indices, limit: Array) -> list[Array]:
     """Return the corners of rings that are kept within limits; none of those that are specks.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        Vertices in pixels, ring after ring.
-    starts : ndarray of int, shape (r + 1,)
-        First vertex of each ring, and the end.
-    limit : ndarray, shape (n,)
-        Largest distance of each vertex.
+    Vertices are in pixels; ``limit`` is the largest distance of each.
     """
     kept = simplified(points, starts, limit)
     ends = np.cumsum(np.add.reduceat(kept, starts[:-1]))
@@ -199,10 +156,7 @@ def corners_of(points: Array, starts: Indices, limit: Array) -> list[Array]:
 def area_of(ring: Array) -> float:
     """Return the area within a ring, negative where it runs around a hole.
 
-    Parameters
-    ----------
-    ring : ndarray, shape (n, 2)
-        Vertices, the inside at the right hand on paper, whose rows run downward.
+    The inside is at the right hand on paper, whose rows run downward.
     """
     x, y = (ring - ring[0]).T
     return float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) / 2)
@@ -211,16 +165,7 @@ def area_of(ring: Array) -> float:
 def walked(follows: Indices) -> tuple[Indices, Indices]:
     """Return the numbers of segments ring after ring, and where each ring begins.
 
-    Parameters
-    ----------
-    follows : ndarray of int, shape (n,)
-        Number of the segment after each.
-
-    Returns
-    -------
-    walk : ndarray of int, shape (n,)
-    starts : ndarray of int, shape (r + 1,)
-        First of each ring in the walk, and the end.
+    ``follows`` is the number of the segment after each.
     """
     ahead = follows.tolist()
     seen = bytearray(len(ahead))
@@ -240,14 +185,7 @@ def walked(follows: Indices) -> tuple[Indices, Indices]:
 def smoothed(points: Array, sharp: Bools, starts: Indices) -> Array:
     """Return vertices, those between two surfaces as means of five that follow each other.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        Vertices, ring after ring.
-    sharp : ndarray of bool, shape (n,)
-        Mask of those between two surfaces.
-    starts : ndarray of int, shape (r + 1,)
-        First vertex of each ring, and the end.
+    ``sharp`` masks the vertices between two surfaces.
     """
     count = np.ones(len(starts) - 1, dtype=np.intp)
     every = [shifted(starts, step * count) for step in range(-2, 3)]
@@ -257,15 +195,7 @@ def smoothed(points: Array, sharp: Bools, starts: Indices) -> Array:
 
 
 def shifted(starts: Indices, steps: Indices) -> Indices:
-    """Return for each vertex of rings the number of the one some steps ahead in its ring.
-
-    Parameters
-    ----------
-    starts : ndarray of int, shape (r + 1,)
-        First vertex of each ring, and the end.
-    steps : ndarray of int, shape (r,)
-        Steps in each ring.
-    """
+    """Return for each vertex of rings the number of the one some steps ahead in its ring."""
     lengths = np.diff(starts)
     first = np.repeat(starts[:-1], lengths)
     place = np.arange(starts[-1]) - first
@@ -279,14 +209,7 @@ def simplified(points: Array, starts: Indices, limit: Array) -> Bools:
 
     It is the method of Douglas and Peucker for all rings at once, a round for each halving.
 
-    Parameters
-    ----------
-    points : ndarray, shape (N, d)
-        Vertices, ring after ring.
-    starts : ndarray of int
-        Where each ring begins, and the end of the last.
-    limit : ndarray, shape (N,)
-        Largest distance of each vertex.
+    ``limit`` is the largest distance of each vertex.
     """
     lengths = np.diff(starts)
     first = np.repeat(starts[:-1], lengths)

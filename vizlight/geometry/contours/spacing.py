@@ -26,13 +26,9 @@ CHORDS, LEAST, MORE = 0.05, 0.01, 1.05
 class LuminanceSteps:
     """Steps of luminance between two bounds.
 
-    Attributes
-    ----------
-    edges : ndarray, shape (n + 1,)
-        Luminance of the contours in ascending order, including the lowest and the highest.
-    values : ndarray, shape (n + 1,)
-        Luminance of the bands: the lowest luminance itself for band 0, then the midpoint of each
-        step.
+    ``edges`` (n + 1,) is the luminance of the contours in ascending order, the lowest and the
+    highest included; ``values`` (n + 1,) that of the bands: the lowest itself for band 0, then the
+    midpoint of each step.
     """
 
     edges: Array
@@ -50,15 +46,7 @@ class LuminanceSteps:
 
 
 def check(levels: object) -> None:
-    """Validate ``levels`` in each of its three forms.
-
-    Raises
-    ------
-    TypeError
-        If ``levels`` is neither a number nor a sequence of numbers.
-    ValueError
-        If a count is less than 1, an error is not positive, or values are not finite.
-    """
+    """Validate ``levels`` in each of its three forms."""
     expected = "a count (int), luminance values (a sequence) or an allowed error (float)"
     if isinstance(levels, bool | str) or levels is None:
         raise _check.type_error("levels", expected, levels)
@@ -90,31 +78,11 @@ def allowed(levels: object) -> float | None:
 def steps(levels: Levels, low: float, high: float, /, *, exact: bool = False) -> LuminanceSteps:
     """Return the steps between the lowest and the highest luminance.
 
-    Parameters
-    ----------
-    levels : int, float or sequence of float
-        Number n of equal steps (int), allowed error e (float) or luminance of the contours
-        (sequence). For an allowed error the number of steps is the smallest with a half step of at
-        most e, or up to 5 % more unless ``exact``, since 1 to 5 % of e are reserved for contours
-        drawn as chords. It is 1 more where the smallest number, below 20, would leave less than 1
-        %. Contours outside the bounds are ignored.
-    low, high : float
-        Bounds of the luminance.
-    exact : bool, default: False
-        Whether contours are drawn without an error of their own.
+    For an allowed error e the number of steps is the smallest with a half step of at most e, or up
+    to 5 % more unless contours are ``exact``, since 1 to 5 % of e are reserved for contours drawn
+    as chords. It is 1 more where the smallest number, below 20, would leave less than 1 %, and at
+    most 2^20. Contours outside the bounds are ignored.
 
-    Returns
-    -------
-    LuminanceSteps
-        Luminance of contours and bands.
-
-    Raises
-    ------
-    TypeError, ValueError
-        As for :func:`check`, or if an allowed error needs more than 2^20 steps.
-
-    Notes
-    -----
     The value of a band is the midpoint of its two contours, which minimises the largest error: no
     luminance in the band differs by more than half a step. The lowest luminance has its own band,
     so that points without light are exact. Source: Isoluminance, Representing a Sphere.

@@ -19,15 +19,6 @@ def steadied(samples: Array, shown: Bools, scale: int, tolerance: float) -> Arra
     Each pixel becomes the mean of its neighbours, round after round, and what is then farther away
     than the tolerance is put back to it. What differs by a jump is of another surface, and the
     borders of surfaces stay.
-
-    Parameters
-    ----------
-    samples : ndarray of float32, shape (rows, columns, c)
-    shown : ndarray of bool, shape (rows, columns)
-        Mask of samples that are of surfaces.
-    scale : int
-        Samples for each pixel, along a side.
-    tolerance : float
     """
     rows, columns = (side // scale * scale for side in shown.shape)
     blocks = samples[:rows, :columns].reshape(rows // scale, scale, columns // scale, scale, -1)
@@ -77,14 +68,7 @@ def _ends(axis: int) -> tuple[tuple[Slice, ...], tuple[Slice, ...]]:
 
 
 def slopes(samples: Array, scale: int) -> Array:
-    """Return the largest change of a channel per pixel around each sample.
-
-    Parameters
-    ----------
-    samples : ndarray, shape (rows, columns, c)
-    scale : int
-        Samples for each pixel, along a side.
-    """
+    """Return the largest change of a channel per pixel around each sample."""
     steep = np.zeros(samples.shape[:2], dtype=np.float32)
     for channel in range(samples.shape[2]):
         down, right = np.gradient(samples[..., channel])

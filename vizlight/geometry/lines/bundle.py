@@ -74,19 +74,7 @@ def _corners(cells: Array, shape: tuple[int, ...]) -> Iterator[tuple[Indices, Ar
 def spread(cells: Array, values: Array, shape: tuple[int, int, int], /) -> Array:
     """Return a grid to which values are added at places, each over the 8 voxels around it.
 
-    Parameters
-    ----------
-    cells : ndarray of float32, shape (3, N)
-        Places in units of voxels, from 0 to the shape less 2.
-    values : ndarray of float32, shape (N,)
-        Values.
-    shape : tuple of int
-        Numbers of voxels.
-
-    Returns
-    -------
-    ndarray of float32
-        Grid.
+    ``cells`` (3, N) are places in units of voxels, from 0 to the shape less 2.
     """
     values = values.astype(np.float32, copy=False)
     size = shape[0] * shape[1] * shape[2]
@@ -103,17 +91,7 @@ def spread(cells: Array, values: Array, shape: tuple[int, int, int], /) -> Array
 def read(grid: Array, cells: Array, /) -> Array:
     """Return the values of a grid at places, from the 8 voxels around each.
 
-    Parameters
-    ----------
-    grid : ndarray of float32
-        Grid.
-    cells : ndarray of float32, shape (3, N)
-        Places in units of voxels, from 0 to the shape less 2.
-
-    Returns
-    -------
-    ndarray of float32, shape (N,)
-        Values.
+    ``cells`` (3, N) are places in units of voxels, from 0 to the shape less 2.
     """
     values = np.zeros(cells.shape[1], np.float32)
     flat = grid.reshape(-1)
@@ -151,15 +129,7 @@ FARTHEST = 1e6
 def directions(count: int, /) -> Array:
     """Return half of some directions that fill the sphere evenly; their opposites are the others.
 
-    Parameters
-    ----------
-    count : int
-        Number of directions, at least 2.
-
-    Returns
-    -------
-    ndarray, shape (count // 2, 3)
-        Unit vectors of a hemisphere, on a Fibonacci spiral.
+    They are (count // 2, 3) unit vectors of a hemisphere, on a Fibonacci spiral.
     """
     number = np.arange(max(1, count // 2))
     # Bands of equal height have equal areas on a sphere (Archimedes), so even heights spread
@@ -172,15 +142,10 @@ def directions(count: int, /) -> Array:
 class VoxelColumns(NamedTuple):
     """The voxels at points, which stand in columns toward a light.
 
-    Attributes
-    ----------
-    place : ndarray of float32, shape (2, N)
-        Place of each point in its voxel, across the light, from 0 to 1.
-    axes : ndarray of float32, shape (4, 3) or (4, 3, N)
-        Rows that turn a vector from a point into voxels across the light, into its part toward the
-        light, and into the share by which a voxel is wider at its end than at the point.
-    area : ndarray, shape (N,), or float
-        Area of a voxel across the light, in voxels of the medium.
+    ``place`` (2, N) is that of each point in its voxel, across the light, from 0 to 1. ``axes``,
+    (4, 3) or (4, 3, N), turns a vector from a point into voxels across the light, into its part
+    toward the light, and into the share by which a voxel is wider at its end than at the point.
+    ``area`` is that of a voxel across the light, in voxels of the medium.
     """
 
     place: Array
@@ -196,18 +161,11 @@ class VoxelColumns(NamedTuple):
 class Targets(NamedTuple):
     """Points that a medium dims, in voxels from its origin; see :meth:`Medium.targets`.
 
-    Attributes
-    ----------
-    places : ndarray of float32, shape (3, N)
-        Places of the points.
-    finite : ndarray of bool, shape (N,)
-        Mask of the finite points; others are not dimmed.
-    vectors : ndarray of float32, shape (3, N), or None
-        Unit tangents of lines or unit normals of a surface.
-    halves : ndarray of float32, shape (2, 4, N), or None
-        Vectors along both halves of the line of the medium that a point belongs to, as long as
-        these, 0 for none, and 1 where it is straight to a free end, else 0; None for a surface,
-        which light reaches from the side of its normals alone.
+    ``places`` and ``vectors``, unit tangents of lines or unit normals of a surface, have the shape
+    (3, N); points that are not finite are not dimmed. ``halves`` (2, 4, N) has vectors along both
+    halves of the line of the medium that a point belongs to, as long as these, 0 for none, and 1
+    where it is straight to a free end, else 0; it is None for a surface, which light reaches from
+    the side of its normals alone.
     """
 
     places: Array
@@ -218,15 +176,8 @@ class Targets(NamedTuple):
     def facing(self, toward: Array) -> Array:
         """Return the share of light from a direction that points receive, for both its ends.
 
-        Parameters
-        ----------
-        toward : ndarray, shape (3,) or (3, N)
-            Unit direction.
-
-        Returns
-        -------
-        ndarray, shape (2, N)
-            ``|w x t|`` of a line, ``max(0, N . w)`` of a surface, 1 of a point without vectors.
+        Shape (2, N): ``|w x t|`` of a line, ``max(0, N . w)`` of a surface, 1 of a point without
+        vectors.
         """
         if self.vectors is None:
             return np.ones((2, self.places.shape[1]), np.float32)
@@ -251,17 +202,8 @@ class Targets(NamedTuple):
     def own_depth(self, columns: VoxelColumns, thick: float = 0.0) -> Array | float:
         """Return the depth per diameter that the line of a point adds at the point itself.
 
-        Parameters
-        ----------
-        columns : VoxelColumns
-            Voxels at the points.
-        thick : float
-            Diameter of the lines in voxels; 0 for lines without free ends.
-
-        Returns
-        -------
-        ndarray, shape (2, N), or 0.0
-            Depths toward the light and away from it.
+        Depths (2, N) are toward the light and away from it; ``thick`` is the diameter of the lines
+        in voxels, 0 for lines without free ends.
         """
         if self.halves is None:
             return 0.0
@@ -337,20 +279,10 @@ def _central(along: Array) -> Array:
 class Medium:
     """Lines cut to pieces that are no longer than a voxel.
 
-    Attributes
-    ----------
-    middles, vectors : ndarray of float32, shape (3, M)
-        Middle and vector of each piece, in voxels from the origin.
-    free : ndarray of float32, shape (M,)
-        Number of free ends of the line in each piece, over the length of the piece.
-    lengths : ndarray of float32, shape (M,)
-        Length of the line of each piece, in lengths of the piece.
-    origin : ndarray, shape (3,)
-        Centre of the lines.
-    voxel : float
-        Side of a voxel in the unit of the lines.
-    line : ndarray of int, shape (M,)
-        Number of the line of each piece.
+    ``middles`` and ``vectors`` (3, M) of the pieces are in voxels from the ``origin``, the centre
+    of the lines; ``voxel`` is a voxel's side in the unit of the lines. ``free`` is the number of
+    free ends of the line in each piece over the length of the piece, ``lengths`` the length of its
+    ``line`` in lengths of the piece.
     """
 
     middles: Array
@@ -366,19 +298,8 @@ class Medium:
     ) -> Targets:
         """Return points that the medium dims.
 
-        Parameters
-        ----------
-        points : ndarray, shape (N, 3)
-            Positions in the unit of the lines.
-        vectors : ndarray, shape (N, 3), optional
-            Tangents of lines or normals of a surface, of any length.
-        halves : ndarray, shape (N, 2, 4), optional
-            Both halves of the lines that the points belong to, for tangents; see
-            :func:`line_halves`.
-
-        Returns
-        -------
-        Targets
+        Points are in the unit of the lines. Vectors are tangents of lines or normals of a surface,
+        of any length; for tangents, ``halves`` (N, 2, 4) are those of :func:`line_halves`.
         """
         # Centred in float64: float32 would lose the digits of lines far from the origin.
         places = (points.T.astype(np.float64) - self.origin[:, np.newaxis]) / self.voxel
@@ -404,21 +325,9 @@ class Medium:
     ) -> tuple[Array, Array, VoxelColumns]:
         """Return the optical depth per diameter toward a direction and toward its opposite.
 
-        Parameters
-        ----------
-        places : ndarray of float32, shape (3, N)
-            Places of :class:`Targets`.
-        toward : sequence of float, shape (3,)
-            Direction toward a light at infinity, of any length.
-        thick : float
-            Diameter of the lines in voxels; 0 for lines without free ends.
-
-        Returns
-        -------
-        forth, back : ndarray of float32, shape (N,)
-            Depths, the point's own line included; diameters and depths are in voxels.
-        columns : VoxelColumns
-            Voxels at the places.
+        Places are those of :class:`Targets`, the direction is of any length, and ``thick`` is the
+        diameter of the lines in voxels, 0 for lines without free ends. The point's own line is
+        included; diameters and depths are in voxels.
         """
         frame = _frame(toward).astype(np.float32)
         # For so few rows a product of matrices takes twice as long.
@@ -454,21 +363,9 @@ class Medium:
     ) -> Array:
         """Return the share of each light that is left at points.
 
-        Parameters
-        ----------
-        targets : Targets
-            Points.
-        diameter : float
-            Diameter of the lines in the unit of the lines.
-        lights : sequence of (vector of 3 components, bool)
-            Direction toward each light, or its position and True.
-        progress : callable, optional
-            Function that is called with the number of grids that are done.
-
-        Returns
-        -------
-        ndarray of float32, shape (N, L)
-            Shares in [0, 1].
+        Shares (N, L) are in [0, 1]. A light is the direction toward it, or its position and True;
+        the diameter is in the unit of the lines, and ``progress`` takes the number of grids that
+        are done.
         """
         # Points in the order of blocks read voxels that are in the cache.
         thick, order = diameter / self.voxel, _by_blocks(targets.places)
@@ -490,18 +387,8 @@ class Medium:
     def sky(self, targets: Targets, diameter: float, count: int) -> Array:
         """Return the share of light from all sides that is left at points.
 
-        Parameters
-        ----------
-        targets : Targets
-        diameter : float
-            Diameter of the lines in the unit of the lines.
-        count : int
-            Number of directions, each weighted by :meth:`Targets.facing`.
-
-        Returns
-        -------
-        ndarray of float32, shape (N,)
-            Shares in [0, 1].
+        Shares (N,) are in [0, 1]; each of ``count`` directions is weighted by
+        :meth:`Targets.facing`.
         """
         thick, order = diameter / self.voxel, _by_blocks(targets.places)
         targets = targets.ordered(order)
@@ -560,21 +447,8 @@ class Medium:
 def medium(points: Array, connectivity: Indices, offsets: Indices, /, *, voxel: float) -> Medium:
     """Return the medium of some polylines.
 
-    Parameters
-    ----------
-    points : ndarray, shape (N, 3)
-        Positions, in any unit.
-    connectivity : ndarray of int, shape (M,)
-        Indices of the points of each line, one line after the other.
-    offsets : ndarray of int, shape (L + 1,)
-        Start of each line in the connectivity, followed by its length.
-    voxel : float
-        Side of a voxel in the unit of the points.
-
-    Returns
-    -------
-    Medium
-        Pieces of the segments with finite ends.
+    ``offsets`` has the start of each line in the connectivity, followed by its length; ``voxel`` is
+    the side of a voxel in the unit of the points. Pieces are of the segments with finite ends.
     """
     first = segment_starts(connectivity, offsets)
     ends = points[connectivity].astype(np.float64)
@@ -716,23 +590,8 @@ def depths(
     cones that widen with the distance. Near the light they are narrower than a line, which is then
     spread over the width that it shows, and opaque where it covers a cone.
 
-    Parameters
-    ----------
-    medium : Medium
-        Lines.
-    places : ndarray of float32, shape (3, N)
-        Places, in voxels.
-    lamp : sequence of float, shape (3,)
-        Place of the light, inside or outside the bundle, in voxels.
-    thick : float, default: 0.0
-        Diameter of the lines in voxels; 0 for lines without free ends.
-
-    Returns
-    -------
-    depth : ndarray of float32, shape (N,)
-        Depths, the point's own line included.
-    columns : VoxelColumns
-        Voxels at the points.
+    Places and the lamp, which may be outside the bundle, are in voxels; depths are as for
+    :meth:`Medium.depths`.
     """
     centre = np.asarray(lamp, np.float64)[:, np.newaxis]
     # A face of the cube is turned to the middle of the pieces: from afar it is the box of a light

@@ -35,12 +35,8 @@ LEAST_SINE = 1e-5
 class Missed(NamedTuple):
     """Errors of the share of a light that a medium leaves.
 
-    Attributes
-    ----------
-    error : float
-        Error that 95 of 100 points keep to.
-    mean : float
-        Error of the mean share, two standard errors of the sample included.
+    95 of 100 points keep to ``error``; ``mean`` is that of the mean share, two standard errors of
+    the sample included.
     """
 
     error: float
@@ -52,25 +48,8 @@ def missed(
 ) -> Missed:
     """Return the errors of shares of a light, as rays from some of the points find them.
 
-    Parameters
-    ----------
-    medium : Medium
-        Lines.
-    targets : Targets
-        Points.
-    diameter : float
-        Diameter of the lines in the unit of the lines.
-    light : sequence of float, shape (3,)
-        Direction toward the light, or its position.
-    near : bool
-        Whether the light has a position.
-    left : ndarray, shape (N,)
-        Share of the light that the medium leaves at each point.
-
-    Returns
-    -------
-    Missed
-        Zeros where no point faces the light.
+    ``light`` is the direction toward the light, or its position if ``near``; ``left`` is the share
+    of it that the medium leaves at each point. Errors are zero where no point faces the light.
     """
     count = len(left)
     some: Indices = np.arange(count)
@@ -98,15 +77,6 @@ def free_shares(
     Rays start across the width of the line of a point, or at a point of a surface. Lines at random
     overlap: of those that cover the start of a ray, the ones with the middle of the ray's way
     through them ahead of it stop it. The line of a point does not where the ray begins inside it.
-
-    Parameters
-    ----------
-    medium, targets, diameter, light, near
-        As for :func:`missed`.
-
-    Returns
-    -------
-    ndarray, shape (N,)
     """
     thick, places = diameter / medium.voxel, targets.places.astype(np.float64)
     way, reach = _ways(medium, targets, light, near)

@@ -146,16 +146,7 @@ DENSER, WIDE, SHARE = 4, 1.15, 0.7
 def embedded(flow: Flow, spacing: float, places: CellPlaces | None = None) -> Array:
     """Return positions and, on a surface, scaled normals, in which distances are measured.
 
-    Parameters
-    ----------
-    flow : Flow
-    spacing : float
-    places : CellPlaces, optional
-        Default: the vertices.
-
-    Returns
-    -------
-    ndarray, shape (M, 3) or (M, 6)
+    Their shape is (M, 3) or (M, 6); places are by default the vertices.
     """
     rows = [flow.mesh.points] if flow.normals is None else [flow.mesh.points, flow.normals]
     if places is not None:
@@ -408,25 +399,10 @@ def evenly_spaced(
 ) -> tuple[Curves, int]:
     """Return integral curves that are evenly spaced, on a whole surface or in a whole volume.
 
-    Parameters
-    ----------
-    flow : Flow
-    spacing : float
-        Distance at which a curve starts beside another.
-    how : Tracing
-    seeds : CellPlaces or None
-        Seeds of the first curves. None: random places.
-    report : callable, optional
-        Function that takes the number of places of :func:`places_of` that are covered.
+    The second result is the number of closed curves. ``spacing`` is the distance at which a curve
+    starts beside another; the first curves start at the seeds, or at random places. ``report``
+    takes the number of places of :func:`places_of` that are covered.
 
-    Returns
-    -------
-    curves : Curves
-    closed : int
-        Number of curves that are closed.
-
-    Notes
-    -----
     Curves start a spacing beside others and stop where they come nearer than half a spacing to
     another or to themselves. Where no place beside a curve is free, random places that are a
     spacing from all curves are tried until none is left: so every part is reached. On the double
@@ -510,14 +486,7 @@ ON_CURVES = 1000
 
 
 class Distances:
-    """Distances from curves, as :func:`~vizlight.geometry.lines.even.embedded`.
-
-    Parameters
-    ----------
-    flow : Flow
-    spacing : float
-    curves : Curves
-    """
+    """Distances from curves, as :func:`~vizlight.geometry.lines.even.embedded`."""
 
     def __init__(self, flow: Flow, spacing: float, curves: Curves) -> None:
         self.flow, self.spacing = flow, spacing
@@ -532,20 +501,9 @@ class Distances:
     ) -> tuple[Array, Indices]:
         """Return distances from points of other curves of the same family, and these points.
 
-        Parameters
-        ----------
-        at, along : ndarray, shape (N, m) and (N, 3)
-            Embedded places, and directions at them.
-        curve : ndarray of int, shape (N,), or None
-            Curve of each place, whose points do not count.
-        count : int
-            Number of points that are looked at first.
-
-        Returns
-        -------
-        distance : ndarray, shape (N, K)
-            Infinite for points that do not count, and where no point is found.
-        row : ndarray of int, shape (N, K)
+        ``at`` and ``along`` are embedded places and their directions, ``curve`` the curve of each,
+        which does not count itself, and ``count`` the number of points that are looked at first.
+        Distances (N, K) are infinite for points that do not count.
         """
         count = min(count, len(self.there))
         distance = np.full((len(at), count), np.inf)
@@ -597,16 +555,9 @@ class Distances:
 class Parts(Columns):
     """Parts of cells: simplices in them, which are halved.
 
-    Attributes
-    ----------
-    cell : ndarray of int, shape (N,)
-        Cell of each.
-    weights : ndarray, shape (N, k + 1, k + 1)
-        Barycentric coordinates of its corners.
-    corners : ndarray, shape (N, k + 1, m)
-        Embedded corners.
-    far, radius : ndarray, shape (N,)
-        Distance of its middle from the curves, and largest distance of its places from its middle.
+    ``weights`` (N, k + 1, k + 1) are barycentric coordinates of the corners, ``corners`` the
+    embedded ones; ``far`` and ``radius`` are the distance of its middle from the curves, and the
+    largest distance of its places from its middle.
     """
 
     cell: Indices
@@ -655,8 +606,6 @@ def radii(corners: Iterable[Array], middles: Array) -> Array:
 def largest_gap(distances: Distances) -> float:
     """Return the largest distance of a place from the nearest curve.
 
-    Notes
-    -----
     Branch and bound: no place of a part of a cell is farther than its middle is, and its radius.
     Parts that can hold a place farther by :data:`TOLERANCE` than the farthest one found so far are
     halved, the farthest first. The search ends after :data:`MOST_PARTS`, between very many parallel
@@ -729,13 +678,9 @@ def _first_parts(distances: Distances) -> tuple[Parts, float]:
 def evenness(flow: Flow, spacing: float, curves: Curves, /) -> tuple[float, float]:
     """Return how even curves are.
 
-    Returns
-    -------
-    gap : float
-        Largest distance of a place from the nearest curve, in spacings; see :func:`largest_gap`.
-    near : float
-        Distance of a curve's place to the nearest other curve that 5 % of the places fall below, in
-        spacings; infinite for a single curve.
+    They are the largest distance of a place from the nearest curve, see :func:`largest_gap`, and
+    the distance of a curve's place to the nearest other curve that 5 % of the places fall below,
+    infinite for a single curve; both in spacings.
     """
     distances = Distances(flow, spacing, curves)
     gap = largest_gap(distances)

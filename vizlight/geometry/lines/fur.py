@@ -192,31 +192,11 @@ def strands(
 ) -> Array:
     """Return the points of fibres relative to their roots.
 
-    Parameters
-    ----------
-    directions : ndarray, shape (3, F)
-        Unit directions of the fibres at the root.
-    lengths : ndarray, shape (F,), or float
-        Lengths along the fibre, in any unit.
-    segments : int
-        Number S of segments of equal length per fibre, 1 or more.
-    toward : ndarray, shape (3, F), optional
-        Unit directions that the fibres bend toward.
-    bend : float, default: 0.0
-        Multiple of ``toward`` that is added to the direction at the tip; it grows from 0 at the
-        root.
-    curl : float, default: 0.0
-        Multiple of a rotating perpendicular direction that is added; 1 leans the fibre by 45
-        degrees.
-    turns : float, default: 1.0
-        Number of rotations of the curl from root to tip.
-    phase : ndarray, shape (F,), optional
-        Angles at which the curl starts, in radians.
-
-    Returns
-    -------
-    ndarray, shape (S + 1, 3, F)
-        Points from root to tip, of the type of the directions; NaN where an array is not finite.
+    The result has the shape (S + 1, 3, F), from root to tip, for S ``segments`` of equal length;
+    NaN where an array is not finite. Fibres start along unit directions (3, F) and bend ``toward``
+    others: ``bend`` times these are added at the tip, growing from 0 at the root. ``curl`` is the
+    multiple of a perpendicular direction that rotates by ``turns`` from root to tip, from the angle
+    ``phase`` in radians on; 1 leans the fibre by 45 degrees.
     """
     kind = directions.dtype
     out = np.zeros((segments + 1, *directions.shape), kind)
@@ -243,17 +223,9 @@ def strands(
 def tangents(offsets: Array, ways: Array, /) -> Array:
     """Return tangents, of any length, at the points of fibres.
 
-    Parameters
-    ----------
-    offsets : ndarray, shape (S + 1, 3, F)
-        Points from root to tip, as of :func:`strands`.
-    ways : ndarray, shape (3, F)
-        Directions in which the fibres would grow: the tangents of fibres of length 0.
-
-    Returns
-    -------
-    ndarray, shape (S + 1, 3, F)
-        Tangents of the parabolas through three points.
+    They are those of the parabolas through three points; ``offsets`` are as of :func:`strands`, and
+    ``ways`` (3, F), the directions in which the fibres would grow, are the tangents of fibres of
+    length 0.
     """
     step = np.diff(offsets, axis=0)
     out = np.empty_like(offsets)

@@ -49,12 +49,7 @@ class Columns:
 class CellPlaces(Columns):
     """Places in cells.
 
-    Attributes
-    ----------
-    cell : ndarray of int, shape (N,)
-        Index of the cell of each place.
-    weights : ndarray, shape (N, k + 1)
-        Its barycentric coordinates.
+    ``weights`` (N, k + 1) are barycentric coordinates in the ``cell`` of each.
     """
 
     cell: Indices
@@ -78,14 +73,7 @@ def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> I
 
     Points are hooked to neighbours of lower numbers until all edges lie in one tree each.
 
-    Parameters
-    ----------
-    a, b : ndarray of int, shape (n,)
-        Ends of the edges, the lower one first.
-    count : int
-        Number of points.
-    kind : type
-        Type of the result.
+    ``a`` and ``b`` are the ends of the edges, the lower one first.
     """
     root: Indices = np.arange(count, dtype=kind)
     # Roots have the lower numbers, so that no cycle can form; of several edges at one upper end the
@@ -112,17 +100,8 @@ def components(a: Indices, b: Indices, count: int, *, kind: type = np.intp) -> I
 def _across(edges: Array) -> tuple[Array, Array]:
     """Return vectors across the sides of simplices, and the squares of their volumes.
 
-    Parameters
-    ----------
-    edges : ndarray, shape (M, k, 3)
-        Edges from the first vertex of each to the others.
-
-    Returns
-    -------
-    across : ndarray, shape (M, k, 3)
-        Gradients of the weights 1 to k times the second result, in the planes of triangles.
-    volume : ndarray, shape (M,)
-        Determinant of the products of the edges.
+    ``edges`` (M, k, 3) go from the first vertex of each to the others. The vectors are gradients of
+    the weights 1 to k times the second result, in the planes of triangles.
     """
     a, b = edges[:, 0], edges[:, 1]
     normal = np.cross(a, b)
@@ -138,16 +117,9 @@ def _across(edges: Array) -> tuple[Array, Array]:
 class Simplices:
     """Triangles or tetrahedra in 3-space, and their neighbours across sides.
 
-    Parameters
-    ----------
-    points : ndarray, shape (N, 3)
-        Positions of the vertices.
-    cells : ndarray of int, shape (M, k + 1)
-        Vertices of each cell, k = 2 for triangles and 3 for tetrahedra. Vertices at the same
-        position count as one; cells without extent have no neighbours.
-    sheets : ndarray of bool, shape (N,), optional
-        Sheets of the vertices, for two that lie on one another: vertices at the same position count
-        as one only on the same sheet.
+    ``cells`` (M, k + 1) has k = 2 for triangles and 3 for tetrahedra. Vertices at the same position
+    count as one, on the same of two ``sheets`` that lie on one another; cells without extent have
+    no neighbours.
     """
 
     def __init__(self, points: Array, cells: Indices, sheets: Bools | None = None) -> None:
@@ -296,21 +268,8 @@ class Simplices:
         """Return the ends of straight steps, and a mask of those that ended before a boundary.
 
         On triangles a step is laid into the plane of its first triangle with its length kept, and
-        continues straight across edges, as if both triangles were unfolded.
-
-        Parameters
-        ----------
-        places : CellPlaces
-            N places.
-        steps : ndarray, shape (N, 3)
-            Steps from them.
-
-        Returns
-        -------
-        places : CellPlaces
-            Ends of the steps, on the boundary where they would leave the mesh.
-        inside : ndarray of bool, shape (N,)
-            Whether a step was made whole.
+        continues straight across edges, as if both triangles were unfolded. A step that would leave
+        the mesh ends on the boundary.
         """
         # In barycentric coordinates a straight step changes each weight at a constant rate; the
         # first weight to reach 0 tells the side through which it leaves.

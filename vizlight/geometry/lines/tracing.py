@@ -14,24 +14,11 @@ from vizlight.geometry.lines.simplices import CellPlaces, Columns, Simplices, nu
 def double_cover(points: Array, cells: Indices, pairs: Array) -> tuple[Simplices, Array]:
     """Return simplices on which a cross field is a line field.
 
-    Parameters
-    ----------
-    points : ndarray, shape (N, 3)
-    cells : ndarray of int, shape (M, k + 1)
-    pairs : ndarray, shape (N, 2, 3)
-        Two directions at each vertex, of length 1, or zero without a direction. Their order and
-        their signs may differ from vertex to vertex.
+    ``pairs`` (N, 2, 3) has two directions at each vertex, of length 1, or zero without a direction;
+    their order and their signs may differ from vertex to vertex. Of the 2 N vertices and 2 M cells
+    of the result, cell i + M lies on cell i, with corners in the same order, and vertex j + N on
+    vertex j; the lines (2 N, 3) are the two of each pair.
 
-    Returns
-    -------
-    mesh : Simplices
-        2 N vertices and 2 M cells: cell i + M lies on cell i, with corners in the same order, and
-        vertex j + N on vertex j.
-    lines : ndarray, shape (2 N, 3)
-        Directions without sign at its vertices: the two of each pair.
-
-    Notes
-    -----
     The directions at both ends of an edge are matched such that the sum of their ``|cos|`` is the
     larger one, and cells share a side where their matches agree. A curve that goes once around a
     singularity of index 1/4 so comes to the other cell over its place, as it continues along the
@@ -69,14 +56,8 @@ AT_REST = 1e-6
 class Tracing:
     """Parameters of traced curves, in a mesh of size 1; see the options of streamlines.
 
-    Attributes
-    ----------
-    step : float
-        Largest length of a step, in extents of its cell.
-    max_length, max_steps : float, int
-        Largest length, and number of steps, on either side of a seed.
-    seed : int
-        Seed of random places.
+    ``step`` is the largest length of a step in extents of its cell, ``max_length`` and
+    ``max_steps`` hold on either side of a seed, and ``seed`` is that of random places.
     """
 
     step: float
@@ -88,16 +69,9 @@ class Tracing:
 class Flow:
     """A field of directions on simplices.
 
-    Parameters
-    ----------
-    mesh : Simplices
-    vectors : ndarray, shape (N, 3)
-        Vectors at the vertices, finite, of a median length near 1.
-    line_field : bool
-        Whether the vectors have no sign: in each cell they are aligned with the direction of the
-        curve before they are interpolated.
-    normals : ndarray, shape (N, 3), optional
-        Normals at the vertices of a surface; None in a volume.
+    Vectors at the vertices are finite, of a median length near 1. Those of a ``line_field`` have no
+    sign: in each cell they are aligned with the direction of the curve before they are
+    interpolated. ``normals`` are of a surface; None in a volume.
     """
 
     def __init__(
@@ -116,13 +90,8 @@ class Flow:
     ) -> tuple[Array, Bools]:
         """Return unit directions, and a mask of the places that have one.
 
-        Parameters
-        ----------
-        places : CellPlaces
-        along : ndarray, shape (N, 3), optional
-            Directions that lines without sign are aligned with.
-        sign : ndarray, shape (N,), optional
-            1 along the vectors, the default, -1 against them; used where ``along`` does not decide.
+        Lines without sign are aligned with ``along``; where it does not decide, ``sign`` is 1 along
+        the vectors, the default, or -1 against them.
         """
         sign = np.ones(len(places.cell)) if sign is None else sign
         corners = self.vectors[self.mesh.cells[places.cell]]
@@ -145,19 +114,9 @@ class Flow:
 class Walkers(Columns):
     """Ends of curves that grow.
 
-    Attributes
-    ----------
-    curve : ndarray of int, shape (N,)
-        Number of the curve of each end.
-    sign : ndarray, shape (N,)
-        1 for the end that runs along the field from the seed, -1 for the other.
-    places : CellPlaces
-    along : ndarray, shape (N, 3)
-        Unit directions in which they go.
-    number : ndarray of int, shape (N,)
-        Number of steps made.
-    length : ndarray, shape (N,)
-        Length of the steps made.
+    ``sign`` is 1 for the end of a ``curve`` that runs along the field from the seed, -1 for the
+    other; ``along`` has the unit directions in which they go, ``number`` and ``length`` those of
+    the steps so far.
     """
 
     curve: Indices
@@ -183,20 +142,8 @@ class Walkers(Columns):
     def advanced(self, flow: Flow, step: Array) -> tuple[Walkers, Bools, Bools]:
         """Take one step by the midpoint rule.
 
-        Parameters
-        ----------
-        flow : Flow
-        step : ndarray, shape (N,)
-            Lengths of the steps.
-
-        Returns
-        -------
-        ahead : Walkers
-            Ends after the step.
-        stepped : ndarray of bool, shape (N,)
-            Whether a step was made: not where a curve comes to rest or turns back.
-        inside : ndarray of bool, shape (N,)
-            Whether the curve goes on: not where it has reached a boundary.
+        The masks are of ends that have gone a step, not where a curve comes to rest or turns back,
+        and of ends that go on, not where they have reached a boundary.
         """
         # The direction half a step ahead carries the whole step, which makes its error of order 3.
         half, _ = flow.mesh.walk(self.places, self.along * (step / 2)[:, np.newaxis])
@@ -213,14 +160,8 @@ class Walkers(Columns):
 class Curves:
     """Curves as places, one curve after the other.
 
-    Attributes
-    ----------
-    places : CellPlaces
-        All places, each curve in the direction of the field.
-    along : ndarray, shape (N, 3)
-        Unit directions of the field at the places.
-    offsets : ndarray of int, shape (L + 1,)
-        Start of each curve, followed by the number of places.
+    Each curve runs in the direction of the field, which has the unit directions ``along``;
+    ``offsets`` has the start of each, followed by the number of places.
     """
 
     places: CellPlaces
@@ -244,16 +185,9 @@ def passed(
 ) -> Curves:
     """Return the curves along which ends have gone, in the order of their numbers.
 
-    Parameters
-    ----------
-    trail : list of Walkers
-        Ends after each step.
-    last : dict
-        Number of the last step that is kept, by curve and sign, where some are not.
-    closed : set of int
-        Curves that return from their last place to the first.
-    dropped : set of int
-        Curves that are left out.
+    ``trail`` has the ends after each step, ``last`` the number of the last step that is kept, by
+    curve and sign, where some are not. ``closed`` curves return from their last place to the first;
+    ``dropped`` ones are left out.
     """
     all_ = trail[0].joined(*trail[1:])
     limit = np.full((int(all_.curve.max(initial=0)) + 1, 2), np.iinfo(np.intp).max)
@@ -294,22 +228,9 @@ def trace(
 ) -> Curves:
     """Return the integral curves through seeds, in both directions.
 
-    Parameters
-    ----------
-    flow : Flow
-    seeds : CellPlaces
-        N seeds.
-    how : Tracing
-    report : callable, optional
-        Function that takes the number of ends that have stopped, out of 2 N.
+    Those that leave their seed are returned, in the order of the N seeds; ``report`` takes the
+    number of ends that have stopped, out of 2 N.
 
-    Returns
-    -------
-    Curves
-        Those that leave their seed, in the order of the seeds.
-
-    Notes
-    -----
     Midpoint rule: the error of a step is of order 3. A curve ends at a boundary, where the field
     is below a millionth, or where it turns by a right angle in one step.
     """

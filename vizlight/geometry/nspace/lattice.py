@@ -21,14 +21,7 @@ _CORNERS: dict[int, tuple[tuple[int, ...], ...]] = {
 
 
 def resolution(value: int | Sequence[int], k: int, closed: Sequence[bool]) -> tuple[int, ...]:
-    """Return the number of samples in each of k directions, validated.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the value is not one integer or k of them, or one is less than 3 in a closed direction
-        or less than 2 in an open one.
-    """
+    """Return the number of samples in each of k directions, validated."""
     entries: Foreign = value
     several = isinstance(entries, list | tuple) or np.ndim(entries) == 1
     if several and len(entries) != k:
@@ -45,19 +38,9 @@ def resolution(value: int | Sequence[int], k: int, closed: Sequence[bool]) -> tu
 def cells(shape: Sequence[int], closed: Sequence[bool], *, by_rows: bool = False) -> Indices:
     """Return the cells of a lattice of 1 to 3 directions; the last index runs fastest.
 
-    Parameters
-    ----------
-    shape : sequence of int
-        Number of samples in each direction.
-    closed : sequence of bool
-        Whether the last sample of a direction is followed by its first.
-    by_rows : bool, default: False
-        Whether quadrilaterals go along the last direction first, as those of images.
-
-    Returns
-    -------
-    ndarray of int, shape (M, 2^k)
-        Segments, quadrilaterals or hexahedra with corners in VTK's order.
+    They are (M, 2^k) segments, quadrilaterals or hexahedra with corners in VTK's order; in a closed
+    direction the first sample follows the last. ``by_rows`` lays quadrilaterals along the last
+    direction first, as those of images.
     """
     index = np.arange(int(np.prod(shape)), dtype=np.intp).reshape(tuple(shape))
     # Behind the last sample comes the first one itself, no copy of it: a closed direction has no

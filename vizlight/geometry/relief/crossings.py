@@ -28,18 +28,10 @@ LOOK, SINGLE = 8, 1e-6
 def sweep(z: Array, widths: tuple[float, float], slope: float, near: int, least: float) -> Array:
     """Return slopes of the horizons of all nodes of an even field, 0 or more.
 
-    Parameters
-    ----------
-    z : ndarray, shape (ny, nx)
-        Heights, NaN in holes.
-    widths : tuple of 2 float
-        Distances of columns and of rows.
-    slope : float
-        Slope of the azimuth, from 0 to a row per column.
-    near : int
-        Number of columns at which the walk ends; it goes to the border from the number of columns.
-    least : float
-        Share of the sky that may be missed, by arcs over their chords and by distant terrain.
+    ``z`` (ny, nx) is NaN in holes, ``widths`` are the distances of columns and of rows, and
+    ``slope`` is that of the azimuth, from 0 to a row per column. The walk ends at ``near`` columns;
+    it goes to the border from the number of columns. ``least`` is the share of the sky that may be
+    missed, by arcs over their chords and by distant terrain.
     """
     rows, columns = z.shape
     top = float(np.nanmax(z))
@@ -107,18 +99,8 @@ def follow(
 ) -> Array:  # fmt: skip
     """Return slopes of the horizons of some nodes of any field, 0 or more.
 
-    Parameters
-    ----------
-    z : ndarray, shape (ny, nx)
-        Heights, NaN in holes.
-    x, y : ndarray, shapes (nx,), (ny,)
-        Rising nodes.
-    rows, columns : ndarray of int, shape (N,)
-        Nodes.
-    slope : ndarray, shape (N,)
-        Slope of the azimuth of each.
-    top : float
-        Largest height.
+    ``z`` (ny, nx) is NaN in holes, x and y rise; ``slope`` is that of the azimuth of each node,
+    ``top`` the largest height.
     """
     t: Array = np.zeros(len(rows))
     rays = _Walk(z, x, y, rows, columns, slope)

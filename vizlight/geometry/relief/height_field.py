@@ -40,22 +40,9 @@ class Field:
     Coordinates are float64, relative to ``origin``. Cell k of an axis lies between edges k and k +
     1; the first and the last cell are unbounded and have the heights of the border.
 
-    Attributes
-    ----------
-    origin : ndarray, shape (3,)
-        First node of x and of y, and the lowest height.
-    x, y : ndarray, shape (nx,), (ny,)
-        Nodes, rising.
-    heights : ndarray, shape (ny, nx)
-        Heights at the nodes; NaN in holes, unless the field extends over them.
-    edges : tuple of ndarray, shapes (nx + 2,), (ny + 2,)
-        Boundaries of the cells, from -inf to inf.
-    top : float
-        Largest height.
-    border : {"extend", "wall"}
-        Shape of the solid beyond the outermost nodes.
-    stretch : ndarray, shape (ny,)
-        Length of a unit of x in each row.
+    ``origin`` has the first node of x and of y, and the lowest height. ``heights`` (ny, nx) are NaN
+    in holes, unless the field extends over them; ``edges`` go from -inf to inf, and ``stretch``
+    (ny,) is the length of a unit of x in each row.
     """
 
     origin: Array
@@ -111,13 +98,7 @@ class Field:
 def make(
     x: ArrayLike, y: ArrayLike, z: ArrayLike, *, border: Border, stretch: ArrayLike | None = None
 ) -> Field:
-    """Return the :class:`Field` of heights over a grid; without ``stretch`` it is 1 in all rows.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is invalid.
-    """
+    """Return the :class:`Field` of heights over a grid; without ``stretch`` it is 1 in all rows."""
     axes = [_axis(name, values) for name, values in (("x", x), ("y", y))]
     heights = _check.floats("z", z)
     shape = (len(axes[1]), len(axes[0]))
@@ -195,17 +176,7 @@ def continued(x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
     Nodes of holes that are next to heights are continued, too. So the surface does not level out at
     a border or beside a hole, and its nodes are lit by the slope of their own cells.
 
-    Parameters
-    ----------
-    x, y : ndarray, shapes (nx,), (ny,)
-        Nodes, rising.
-    z : ndarray, shape (ny, nx)
-        Heights, NaN in holes.
-
-    Returns
-    -------
-    tuple of ndarray, shapes (nx + 2,), (ny + 2,), (ny + 2, nx + 2)
-        NaN where no two heights in a row, a column or a diagonal are next to a node.
+    Nodes are NaN where no two heights in a row, a column or a diagonal are next to them.
     """
     x, y = (
         np.concatenate([2 * axis[:1] - axis[1:2], axis, 2 * axis[-1:] - axis[-2:-1]])

@@ -33,18 +33,9 @@ def march(
 ) -> None:  # fmt: skip
     """Write the length of rays inside the solid; infinity where it is unbounded.
 
-    Parameters
-    ----------
-    start, way : ndarray, shape (3, N)
-        Starts of rays relative to the field's origin, and unit directions, in float64.
-    reach : ndarray, shape (N,)
-        Lengths of the rays, at most FAR.
-    x, y, corners, bounds
-        Edges, heights and bounds of a :class:`~vizlight.geometry.relief.height_field.Field`.
-    walls : bool
-        Whether some cells have no solid.
-    out : ndarray, shape (N,)
-        Result.
+    ``start`` is relative to the field's origin, ``way`` has unit directions, both (3, N) in
+    float64; ``reach`` is at most FAR. ``x``, ``y``, ``corners`` and ``bounds`` are those of a
+    :class:`~vizlight.geometry.relief.height_field.Field`; ``walls``: some cells have no solid.
     """
     out[:] = 0
     top = bounds.largest[-1]

@@ -214,16 +214,9 @@ LARGEST, LEAST = 0.5, 1e-4
 class SkyShares(NamedTuple):
     """The sky of a height field.
 
-    Attributes
-    ----------
-    share : ndarray of float32, shape (ny, nx)
-        Share in [0, 1], or the openness in radians; NaN at holes.
-    error : float
-        Error that 95 of 100 nodes keep to, as measured.
-    azimuths : int
-        Number of azimuths.
-    method : str
-        "horizons through every cell", "horizons by scan lines" or "horizons by steps".
+    ``share`` (ny, nx) is in [0, 1], or the openness in radians, NaN at holes; 95 of 100 nodes keep
+    to ``error``, as measured. ``method`` is "horizons through every cell", "horizons by scan lines"
+    or "horizons by steps".
     """
 
     share: Array
@@ -245,37 +238,13 @@ def sky(
 ) -> SkyShares:
     """Return the share of the sky that the nodes of a height field see.
 
-    Parameters
-    ----------
-    x : array_like, shape (nx,)
-        Rising nodes, of any spacing.
-    y : array_like, shape (ny,)
-        Rising nodes.
-    z : array_like, shape (ny, nx)
-        Heights. NaN is a hole, which blocks nothing; beyond the border the heights of the border
-        continue.
-    error : float, default: 0.01
-        Error that 95 of 100 nodes shall keep to, from 0.0001 to 0.5; of the openness in radians.
-    openness : bool, default: False
-        Whether the mean angle between the zenith and the horizon is returned, in radians.
-    stretch : array_like, shape (ny,), optional
-        Lengths of a unit of x in the rows, as of degrees of longitude: a node sees the field as if
-        the length were that of its own row everywhere. Default: 1.
-    progress : callable, optional
-        Function of the number of azimuths that are done.
+    Nodes rise, of any spacing. NaN is a hole, which blocks nothing; beyond the border the heights
+    of the border continue. 95 of 100 nodes shall keep to ``error``, from 0.0001 to 0.5, or radians
+    of the ``openness``, the mean angle between the zenith and the horizon; the error of the result
+    exceeds it where 1024 azimuths do not suffice. ``stretch`` has the lengths of a unit of x in the
+    rows, as of degrees of longitude: a node sees the field as if the length were that of its own
+    row everywhere. ``progress`` takes the number of azimuths that are done.
 
-    Returns
-    -------
-    SkyShares
-        Its ``error`` exceeds the one asked for where 1024 azimuths do not suffice.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument does not fit.
-
-    Notes
-    -----
     ``V = 1/pi * integral of max(n . w, 0) over the visible sky``: an endless slope of angle b sees
     (1 + cos b) / 2. The study ``sky`` prints its time.
     """

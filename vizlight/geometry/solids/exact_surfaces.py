@@ -23,12 +23,10 @@ CENTER, AXIS, PROFILE, ROUND = slice(0, 3), slice(3, 6), slice(6, 9), 9
 class Surfaces:
     """Surfaces of a solid, with distances and normals of points on different ones.
 
-    Attributes
-    ----------
-    rows : ndarray, shape (S, 10)
-        Point of the axis; unit axis; profile; 1 for a circle and 0 for a line. With r the distance
-        from the axis and h the height along it, a circle (R, 0, t) has its centre at r = R and the
-        radius t, and a line (a, b, c) holds a r + b h = c, with a² + b² = 1.
+    ``rows`` (S, 10) has a point of the axis, the unit axis, the profile, and 1 for a circle and 0
+    for a line. With r the distance from the axis and h the height along it, a circle (R, 0, t) has
+    its centre at r = R and the radius t, and a line (a, b, c) holds a r + b h = c, with a² + b² =
+    1.
     """
 
     rows: Array

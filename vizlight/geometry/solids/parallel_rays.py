@@ -20,27 +20,10 @@ def hits(
 ) -> tuple[Indices, Indices] | None:
     """Return the ray and the triangle of every hit of the lines through parallel rays.
 
-    Parameters
-    ----------
-    vertices : ndarray, shape (P, 3)
-        Corners of triangles.
-    triangles : ndarray of int, shape (T, 3)
-        Indices of the corners of each triangle.
-    start : ndarray, shape (N, 3)
-        Starting points of the rays.
-    way : ndarray, shape (3,)
-        Unit direction of all rays.
-    most : float, optional
-        Number of pairs for each ray and triangle beyond which None is returned.
+    All rays have one unit direction, and hits are on both sides of their starts. None is returned
+    where the boxes around the triangles hold more than ``most`` pairs for each ray and triangle: a
+    search tree is faster then.
 
-    Returns
-    -------
-    rays, triangles : ndarray of int, shape (H,), or None
-        Hits on both sides of the starting points. None if the boxes around the triangles hold so
-        many rays that a search tree is faster.
-
-    Notes
-    -----
     A ray through an edge or a vertex hits as one that is displaced by an infinitesimal amount, the
     same for all triangles: through a closed surface each ray enters as often as it leaves.
     The side of an edge on which a ray is depends on nothing but the edge, and is computed from its

@@ -308,19 +308,10 @@ FLAT = 1e-14
 def place(mesh: Mesh, tolerance: float) -> Mesh:
     """Return a mesh with its points on all the exact surfaces that meet in them.
 
-    Parameters
-    ----------
-    mesh : Mesh
-        Closed mesh with points within about the tolerance of their surfaces.
-    tolerance : float
-        Largest distance of the surfaces from the triangles.
-
-    Returns
-    -------
-    Mesh
-        Mesh with each point on one surface, on two at a crease or on three at a corner, to
-        rounding. Where two surfaces touch, a point is on one of them. Points that would flip a
-        triangle stay where they are.
+    Points come within about the tolerance, the largest distance of the surfaces from the triangles,
+    and end on one surface, on two at a crease or on three at a corner, to rounding. Where two
+    surfaces touch, a point is on one of them. Points that would flip a triangle stay where they
+    are.
     """
     which = _meeting(mesh)
     points = onto(mesh.surfaces, mesh.points, which, ROUNDS)

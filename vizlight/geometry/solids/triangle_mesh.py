@@ -16,24 +16,10 @@ from vizlight.geometry.solids.primitives import Frustum, Primitive
 class Mesh:
     """Triangles of a solid, each on one of its surfaces, in normalised lengths.
 
-    Attributes
-    ----------
-    points : ndarray, shape (P, 3)
-        Normalised points ``(x - shift) / scale`` of points x.
-    triangles : ndarray of int, shape (T, 3)
-        Indices of corners, counter-clockwise seen from outside.
-    patch : ndarray of int, shape (T,)
-        Index of the surface of each triangle.
-    surfaces : Surfaces
-        Exact surfaces, in normalised lengths.
-    signs : ndarray, shape (number of surfaces,)
-        -1 for a surface that the solid lies outside of, else 1.
-    shift : ndarray, shape (3,)
-        Origin of the normalised points, in the unit of the solid.
-    scale : float
-        Length of one normalised unit.
-    volume_error : float
-        Bound of the difference between this volume and the exact solid's, in normalised lengths.
+    ``points`` are ``(x - shift) / scale`` of points x, in the unit of the solid; triangles are
+    counter-clockwise seen from outside, ``patch`` is the surface of each, and ``signs`` is -1 for a
+    surface that the solid lies outside of, else 1. ``volume_error`` bounds the difference between
+    this volume and the exact solid's, in normalised lengths.
     """
 
     points: Array

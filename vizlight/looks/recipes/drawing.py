@@ -121,16 +121,8 @@ Recipe: TypeAlias = "Callable[[Case], Drawing]"
 class Layer:
     """One mesh of the picture.
 
-    Parameters
-    ----------
-    mesh : Step
-        Step that makes the mesh.
-    keywords : dict
-        Keywords of ``add_mesh``.
-    live : bool
-        Whether the plotter's component for light adds it, or PyVista itself.
-    quiet : bool
-        Whether points that cannot be lit are reported elsewhere.
+    ``keywords`` are those of ``add_mesh``. With ``live`` the plotter's component for light adds it,
+    not PyVista itself; of a ``quiet`` one points that cannot be lit are reported elsewhere.
     """
 
     mesh: Step
@@ -150,12 +142,8 @@ class Layer:
 class Doubt:
     """Questions that a picture must answer before it is chosen.
 
-    Parameters
-    ----------
-    figures : sequence of str
-        Figures of legibility that the picture must have.
-    instead : callable
-        Function that makes another drawing where one of them is unreadable.
+    The picture must have the ``figures`` of legibility; ``instead`` makes another drawing where one
+    of them is unreadable.
     """
 
     figures: Sequence[str]
@@ -166,40 +154,16 @@ class Doubt:
 class Drawing:
     """Drawing that a recipe makes of a case.
 
-    Parameters
-    ----------
-    layers : sequence of Layer
-        Meshes of the picture, the main one first.
-    camera : Step
-        Step that makes the camera.
-    scene : Step
-        Step that makes the scene.
-    lit : Step
-        Step that makes the main mesh with its light as point arrays.
-    words : str
-        Subject, as the end of "shown ...".
-    keys : sequence of dict
-        Keywords of ``plotter.vizlight.add_key``, for each key.
-    notes : sequence of str
-        Notes for a reader.
-    kind : Step, optional
-        Step with a mesh of the type of the lit mesh. Default: the surface of a mesh.
-    parts : sequence of str
-        Names of the blocks of the lit mesh that are written to files of their own.
-    alone : Step, optional
-        Lit mesh for files that hold one mesh, where the lit mesh has blocks.
-    name : str
-        Name of the array of light.
-    colors : dict
-        Array and colour map of the main mesh, as :func:`vizlight.save_gltf` takes them.
-    background : str, optional
-        Colour behind the data, where neither a white nor a dark one suits them.
-    doubt : Doubt, optional
-        Questions that the picture may fail to answer.
-    insets : sequence of Layer
-        Meshes of smaller views beside the main one, which pages and movies leave out.
-    picture_camera : Step, optional
-        Camera of a picture with insets. Default: that of the main view.
+    The main one of the ``layers`` is the first; ``lit`` makes it with its light as point arrays of
+    the ``name``. ``words`` are the subject, as the end of "shown ...", ``keys`` the keywords of
+    ``plotter.vizlight.add_key`` for each key, and ``notes`` are for a reader. ``kind`` has a mesh
+    of the type of the lit mesh, by default the surface of a mesh; ``parts`` are the names of the
+    blocks of the lit mesh that are written to files of their own, and ``alone`` is the lit mesh for
+    files that hold one mesh. ``colors`` are array and colour map of the main mesh, as
+    :func:`vizlight.save_gltf` takes them, and ``background`` is for data that neither a white nor a
+    dark one suits. ``doubt`` has questions that the picture may fail to answer, ``insets`` are of
+    smaller views beside the main one, which pages and movies leave out, and ``picture_camera`` is
+    the camera of a picture with them.
     """
 
     layers: Sequence[Layer]
@@ -268,24 +232,9 @@ class Drawing:
 class Case:
     """One mesh, the wishes for it, and the question that a rule or a user chose.
 
-    Parameters
-    ----------
-    data : Step
-        Step that reads the mesh.
-    contents : Contents
-        Contents of the mesh.
-    wishes : Wishes
-        Options that were given.
-    question : str
-        Question of the light.
-    array : Named, optional
-        Array that is shown.
-    viewpoint : Viewpoint, optional
-        From where it is seen, where a recipe knows a better place than that of any mesh.
-    is_beside : bool, default: False
-        Whether a mesh of a higher dimension is in the picture.
-    eyes : dict
-        Eyes that were chosen, by the steps of the meshes that they see and the arrays shown.
+    ``question`` is that of the light, ``viewpoint`` a better place to see it from than that of any
+    mesh, ``is_beside`` says that a mesh of a higher dimension is in the picture, and ``eyes`` are
+    those that were chosen, by the steps of the meshes that they see and the arrays shown.
     """
 
     data: Step
@@ -356,12 +305,7 @@ class Case:
     def boxed(self, box: Step, camera: Step) -> list[Layer]:
         """Return the layers of a box and of the numbers along its edges.
 
-        Parameters
-        ----------
-        box : Step
-            Step that makes the edges of the box.
-        camera : Step
-            Step of the camera, set by :meth:`camera` on the data in the box.
+        The camera is set by :meth:`camera` on the data in the box.
         """
         edges = Step("", "render.box_edges", box, camera)
         layers = [Layer(edges, BOX_EDGES | BESIDE, live=False)]
@@ -505,14 +449,7 @@ class Case:
     def camera(self, mesh: Step, eye: Viewpoint | None = None, *, boxed: bool = False) -> Step:
         """Return the step that sets the camera on a mesh, by the options or as suits it.
 
-        Parameters
-        ----------
-        mesh : Step
-            Step of the mesh.
-        eye : Viewpoint, optional
-            From where it is seen.
-        boxed : bool
-            Whether it is a box with numbers along its edges.
+        ``boxed`` is for a box with numbers along its edges.
         """
         eye = self.eye(mesh) if eye is None else eye
         if self.frame is not None:
@@ -589,22 +526,10 @@ class Case:
     ) -> tuple[Keywords, str]:
         """Return the colours of values in the range that suits them, and words if it is not all.
 
-        Parameters
-        ----------
-        values : ndarray
-            Values, of which those that are finite count.
-        name : str
-            Name of the values.
-        cmap : str
-            Colour map where none is asked for.
-        unit : float, default: 1.0
-            Unit in which they are read, in that of the values.
-        scan : bool, default: False
-            Whether they are those of a scan in grey.
-        beyond : callable, optional
-            Returns the share of regions of the mesh that lie beyond the ends of a range.
-        **kind
-            Kind of the values, as for :func:`vizlight.looks.ranges.range_shown`.
+        Values that are finite count; ``cmap`` is for users who name none, ``unit`` is that in which
+        values are read, in that of theirs, and ``scan`` is for those of a scan in grey. ``beyond``
+        returns the share of regions of the mesh that lie beyond the ends of a range, and ``kind``
+        is as for :func:`vizlight.looks.ranges.range_shown`.
         """
         values = values[np.isfinite(values)] / unit
         # Points in the pale colour of 0 would not be seen on paper.
@@ -635,16 +560,7 @@ class Case:
     def ranged_of(self, mesh: Step, array: Named, cmap: str, **kind: bool) -> tuple[Keywords, str]:
         """Return the colours of an array as :meth:`ranged` does, in the unit in which it is read.
 
-        Parameters
-        ----------
-        mesh : Step
-            Step of the mesh.
-        array : Named
-            Array; only that of values has a range of its own.
-        cmap : str
-            Colour map where none is asked for.
-        **kind
-            As for :meth:`ranged`.
+        Only an array of values has a range of its own.
         """
         if array.role != "values":
             return {"cmap": cmap, "nan_color": MISSING} | self.wishes.colors, ""
@@ -703,13 +619,7 @@ class Case:
 
     @property
     def needed_array(self) -> Named:
-        """Array that is shown, of a recipe that cannot do without.
-
-        Raises
-        ------
-        ValueError
-            If there is none.
-        """
+        """Array that is shown, of a recipe that cannot do without."""
         if self.array is None:
             names = [array.name for array in self.contents.arrays]
             expected = f"the name of an array, {one_of(names)}"
@@ -734,10 +644,7 @@ def _is_cut_by_box(surface: pv.PolyData, edges: pv.PolyData) -> bool:
 def colors_of_rain(values: Array) -> Keywords:
     """Return the colours of rain in steps of decibels above 0, below which there is hardly any.
 
-    Parameters
-    ----------
-    values : ndarray
-        Finite values, one at least.
+    Values are finite, one at least.
     """
     # Single places reflect more than any rain.
     high = float(DECIBELS * max(np.ceil(np.percentile(values, RAINY) / DECIBELS), 2))
@@ -749,13 +656,7 @@ def colors_of_rain(values: Array) -> Keywords:
 def colors_in(shown: Range, cmap: Foreign, unit: float = 1.0) -> Keywords:
     """Return the colours of a range, with those of values outside of it.
 
-    Parameters
-    ----------
-    shown : Range
-    cmap : str or colour map
-        Colours from one end to the other.
-    unit : float, default: 1.0
-        Unit of the range, in that of the values.
+    ``unit`` is that of the range, in that of the values.
     """
     ends = _in_unit([shown.low, shown.high], unit)
     if shown.logarithmic and shown.ground:
@@ -967,12 +868,7 @@ def colors_of(array: Named, colors: Keywords) -> Keywords:
 def lines_every(title: str, levels: Sequence[float]) -> str:
     """Return the title of a bar with the step of isolines.
 
-    Parameters
-    ----------
-    title : str
-        Title, with a unit.
-    levels : sequence of float
-        Levels of the isolines, in even steps.
+    The title has a unit, and levels are in even steps.
     """
     if len(levels) < 2:
         return title

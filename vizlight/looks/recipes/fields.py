@@ -230,15 +230,8 @@ def _is_even(mesh: pv.DataSet, name: str) -> bool:
 def strokes_on(case: Case, section: Step, camera: Step, pixel: float) -> Layer | None:
     """Return the layer of strokes along vectors on a section, None if none can be laid.
 
-    Parameters
-    ----------
-    case : Case
-    section : Step
-        Step of the section, with the array of vectors of the case.
-    camera : Step
-        Camera of the main view.
-    pixel : float
-        Size of a pixel of the section in the unit of the mesh.
+    The section has the array of vectors of the case; ``pixel`` is the size of one in the unit of
+    the mesh.
     """
     spacing = max(section.run().length * SPACING, SPARSE * LEAST_SPACING * case.width * pixel)
     scene = case.wishes.scene("none", camera)

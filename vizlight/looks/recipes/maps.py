@@ -201,12 +201,8 @@ def _with_classes(case: Case, drawing: Drawing) -> Drawing:
 def classes(levels: Sequence[float], ends: tuple[float, float]) -> list[float]:
     """Return the values at which the classes of colours between isolines begin and end.
 
-    Parameters
-    ----------
-    levels : sequence of float
-        Levels of the isolines, in even steps; where they are few, classes end halfway too.
-    ends : (float, float)
-        Ends of the values, which the first and the last class, as wide as the others, hold.
+    Levels are in even steps; where they are few, classes end halfway too. The first and the last
+    class, as wide as the others, hold the ``ends`` of the values.
     """
     if len(levels) < 2:
         return [ends[0], *levels, ends[1]]
