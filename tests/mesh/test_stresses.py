@@ -57,7 +57,7 @@ def test_a_solid_with_stresses_shows_them_whatever_moves_it():
 
 @pytest.mark.parametrize(
     ("largest", "factor", "words"),
-    [(0.5, 1, "; displaced"), (1e-3, 500, "; displaced 500 times"), (50.0, None, "")],
+    [(0.5, 1, "; displaced, true to scale"), (1e-3, 500, "; displaced 500 times"), (50.0, None, "")],
 )
 def test_a_solid_with_stresses_is_displaced_so_that_it_is_seen(largest, factor, words):
     mesh = bar([[1, 0, 0, 0, 0, 0], [2, 0, 0, 0, 0, 0]])

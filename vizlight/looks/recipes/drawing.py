@@ -73,7 +73,7 @@ THIN = 1.5 / (85 / 25.4 * 300)
 #: Most kinds that have a key: more of them share colours.
 MOST_IN_KEY = 16
 #: Colour of a value that is the only one.
-ONLY = "#4477aa"
+ONLY = "#5c6d9f"
 #: Colour of the borders of surfaces, and keywords of what stands beside the data.
 DARK, BESIDE = "#333333", {"pickable": False}
 #: Most letters of a short form, such as SST, which stays in capitals.
@@ -686,7 +686,7 @@ class Case:
             return ""
         factor = float(step.arguments[2])  # type: ignore[arg-type]
         if step.name == DISPLACED:
-            return "; displaced" if factor == 1 else f"; displaced {factor:g} times"
+            return f"; displaced{', true to scale' if factor == 1 else f' {factor:g} times'}"
         return times_as_high(factor)
 
     @property
