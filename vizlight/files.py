@@ -20,7 +20,7 @@ from vizlight.writing import write_mesh
 
 __all__ = [
     "FileError", "atoms_in", "backbone", "borders", "creases", "cut_open", "layer_of", "layers",
-    "ligands", "obstacles", "read", "read_parts", "side_by_side", "stretched", "surface_of", "walls",
-    "warped", "with_last_coordinate", "with_vectors", "with_von_mises", "without_corner",
+    "ligands", "obstacles", "read", "read_parts", "side_by_side", "stretched", "surface_of",
+    "walls", "warped", "with_last_coordinate", "with_vectors", "with_von_mises", "without_corner",
     "without_fills", "write_mesh",
 ]  # fmt: skip

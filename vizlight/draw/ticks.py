@@ -52,7 +52,7 @@ def numerals_of(values: Sequence[float]) -> list[str]:
     if size >= 1e6 or 0 < size < 1e-3:
         words = [_power(value) for value in values]
         # Places of large numbers may differ in their last digits.
-        return words if len({*words}) == len(words) else [f"{value:.12g}" for value in values]
+        return words if len({*words}) == len(words) else [f"{value:,.12g}" for value in values]
     comma, digits = (",", 6) if size >= 1e4 else ("", 4)
     if len(values) < 2:
         return [f"{value:{comma}.{digits}g}" for value in values]

@@ -640,8 +640,8 @@ def _seen(
 ) -> float:
     """Return the area that an eye at infinity sees, by how much of a picture it fills.
 
-    Of values, the area counts up to twice where their spread in the picture is that of all, and in
-    place of that of kinds the mean share of each that is seen.
+    Of values, the area counts up to twice where their spread in the picture is that of all, and of
+    kinds by the mean share of each that is seen.
     """
     right, up = _plane(way)
     facing = normals @ way / np.where(areas > 0, areas, 1)
@@ -654,7 +654,7 @@ def _seen(
         front = front * np.isfinite(values)
         seen = float(front.sum())
         if has_kinds:
-            seen = float(_shares_of_kinds(values, front, areas).mean())
+            seen *= float(_shares_of_kinds(values, front, areas).mean())
         else:
             spread = _spread(values, front * cosines) / (_spread(values, areas) or 1.0)
             seen *= 1 + min(spread, 1.0)
@@ -716,13 +716,13 @@ def _in_front(places: Array, count: int, way: Array) -> Bools:
 
 
 def places_on(surface: pv.PolyData) -> Array:
-    """Return places all over a surface, (N, 3), as many on a triangle as its area is large.
+    """Return places all over a surface, (N, 3), its points and others by the area of its triangles.
 
     Parameters
     ----------
     surface : pyvista.PolyData
     """
-    return _places(_triangles(surface)[1])
+    return np.concatenate([surface.points, _places(_triangles(surface)[1])])
 
 
 def sees(places: Array, place: Array, way: Array) -> bool:

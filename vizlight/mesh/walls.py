@@ -23,7 +23,7 @@ ROUNDING = 1e-9
 #: it, as a share of the size of the mesh.
 SAMPLE, ON_HULL = 4000, 0.01
 #: Least share of a convex hull that a mesh with obstacles fills.
-FILLED = 0.6
+FILLED = 0.8
 #: Name of the temporary array of ways from the middle of a cell to that of its face.
 _OUTWARD = "vizlight outward"
 
@@ -91,7 +91,7 @@ def walls(volume: pv.DataSet, /) -> pv.PolyData:
 def obstacles(surface: pv.PolyData, name: str, /) -> pv.PolyData:
     """Return the outer surface of a volume with values at the walls that stand inside alone.
 
-    Those are inside of its convex hull by 0.01 of its size, of a volume that fills it: on 0.6 of
+    Those are inside of its convex hull by 0.01 of its size, of a volume that fills it: on 0.8 of
     the area of the convex hull there are faces.
 
     Parameters
@@ -115,7 +115,7 @@ def obstacles(surface: pv.PolyData, name: str, /) -> pv.PolyData:
     --------
     >>> import pyvista as pv
     >>> from vizlight import files
-    >>> shell = pv.SolidSphere(inner_radius=1.0, outer_radius=2.0).extract_surface()
+    >>> shell = files.surface_of(pv.SolidSphere(inner_radius=1.0, outer_radius=2.0))
     >>> shell["heat"] = [1.0] * shell.n_points
     >>> inner = files.obstacles(shell, "heat").threshold(0.0, scalars="heat")
     >>> round(inner.length, 1)
@@ -128,10 +128,12 @@ def obstacles(surface: pv.PolyData, name: str, /) -> pv.PolyData:
     values = np.array(surface.point_data[name], dtype=np.float64)
     ids, ends = connectivity(surface.GetPolys())
     of_faces = np.repeat(np.arange(len(ends) - 1), np.diff(ends))
-    on_hull: Bools = np.zeros(surface.n_points, dtype=np.bool_)
-    on_hull[ids[_are_on_hull(surface)[of_faces]]] = True
-    values[on_hull] = np.nan
-    walls.point_data[name] = values
+    # Cells of points and lines come before faces.
+    first = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
+    stands_inside: Bools = np.zeros(surface.n_points, dtype=np.bool_)
+    stands_inside[ids] = True
+    stands_inside[ids[_are_on_hull(surface)[first + of_faces]]] = False
+    walls.point_data[name] = np.where(stands_inside, values, np.nan)
     return walls
 
 
