@@ -87,7 +87,9 @@ def test_a_single_highest_stress_that_has_room_beside_it_is_marked(peaks, word):
     plate.points[:, 2] = np.abs(plate.points[:, 0] - 15) / 10
     far = np.min([np.hypot(*(plate.points[:, :2] - (x, 3)).T) for x in peaks], axis=0)
     plate["S_Mises"] = 52345 * np.exp(-far / 3)
-    layers = vizlight.look(plate, view="z").drawing.layers
+    drawing = vizlight.look(plate, view="z").drawing
+    layers = drawing.layers
+    assert len(drawing.of_turns.layers) == len(layers) - 2 * bool(word)
     words = [layer.mesh.keywords.get("names") for layer in layers]
     assert ([word] in words) is bool(word)
     spots = [layer.mesh.run() for layer in layers if "point_size" in layer.keywords]

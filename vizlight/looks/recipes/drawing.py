@@ -92,6 +92,8 @@ ON_BOX, CUT = 1e-3, 0.95
 
 #: Functions that make letters that face the eye of the picture.
 FACING = ("render.box_axes", "render.captions")
+#: Name of the step of a place beside which such letters stand.
+PLACE = "place"
 #: Least cosine between an axis and a side of the picture along which it runs.
 ALONG = 0.99
 
@@ -243,7 +245,7 @@ class Drawing:
                 framed = first.keywords.get("around", surface)
                 camera = Step("camera", camera.path, framed, toward, **camera.keywords)
                 layer = dataclasses.replace(layer, mesh=surface)
-            if step.path not in FACING:
+            if step.path not in FACING and step.name != PLACE:
                 kept.append(layer)
         return dataclasses.replace(self, layers=kept, camera=camera, insets=(), picture_camera=None)
 

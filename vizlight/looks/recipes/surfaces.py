@@ -23,6 +23,7 @@ from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
     MOST_IN_KEY,
     ON_SURFACES,
+    PLACE,
     Drawing,
     Layer,
     colors_in,
@@ -246,8 +247,8 @@ def _peak(case: Case, mesh: Step, camera: Step) -> list[Layer]:
         ends = np.abs((peak - eye.focal_point) @ across.T + middle) + half
         if not beside.all(axis=1).any() and np.all(ends < room):
             spot, place = (
-                Step("", "pyvista.PolyData", [[float(f"{part:.6g}") for part in at]])
-                for at in (peak, peak + (middle - (0, 0.6 * tall)) @ across)
+                Step(name, "pyvista.PolyData", [[float(f"{part:.6g}") for part in at]])
+                for name, at in ((PLACE, peak), ("", peak + (middle - (0, 0.6 * tall)) @ across))
             )
             block = Step("", "pyvista.MultiBlock", [place])
             text = case.wishes.words_around(block, camera, 1.0, names=[word])
