@@ -21,7 +21,7 @@ ENCLOSED, ATTACHED = 5.0, 20.0
 ROUNDING = 1e-9
 #: Most points of a convex hull and rows of distances from it, and distance of a place that is on
 #: it, as a share of the size of the mesh.
-SAMPLE, ON_HULL = 4000, 0.01
+SAMPLE, ON_HULL = 1000, 0.01
 #: Least share of a convex hull that a mesh with obstacles fills.
 FILLED = 0.8
 #: Name of the temporary array of ways from the middle of a cell to that of its face.

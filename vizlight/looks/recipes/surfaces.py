@@ -224,7 +224,7 @@ def _peak(case: Case, mesh: Step, camera: Step) -> list[Layer]:
     values: Array = np.nan_to_num(np.asarray(surface[array.name], dtype=np.float64))
     places = surface.cell_centers() if array.of_cells else surface
     points: Array = np.asarray(places.points, dtype=np.float64)
-    if values.ndim > 1 or not values.size or not np.ptp(values):
+    if not values.size or not np.ptp(values):
         return []
     peak, way, filled = points[np.argmax(values)], np.negative(eye.direction), places_on(surface)
     high = points[values >= values.min() + PEAK * np.ptp(values)]
