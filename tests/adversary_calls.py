@@ -272,6 +272,7 @@ OWN = {
     "creases.creases": {"surface": ball},
     "creases.borders": {"surface": ball},
     "walls.walls": {"volume": lambda: pv.SolidSphere(inner_radius=0.1, outer_radius=2.0)},
+    "walls.obstacles": {"surface": ball, "name": "s"},
     "cutaways.cut_open": {"volume": block, "name": "v"},
     "cutaways.without_corner": {"volume": block, "name": "v"},
     "molecules.backbone": {"atoms": chain},

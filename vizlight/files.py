@@ -12,7 +12,7 @@ from vizlight.mesh.fills import without_fills
 from vizlight.mesh.montages import side_by_side
 from vizlight.mesh.nspace import with_last_coordinate
 from vizlight.mesh.stresses import with_von_mises
-from vizlight.mesh.walls import walls
+from vizlight.mesh.walls import obstacles, walls
 from vizlight.reading.molecules import atoms_in, backbone, ligands
 from vizlight.reading.paths import FileError
 from vizlight.reading.reader import read, read_parts
@@ -20,7 +20,7 @@ from vizlight.writing import write_mesh
 
 __all__ = [
     "FileError", "atoms_in", "backbone", "borders", "creases", "cut_open", "layer_of", "layers",
-    "ligands", "read", "read_parts", "side_by_side", "stretched", "surface_of", "walls", "warped",
-    "with_last_coordinate", "with_vectors", "with_von_mises", "without_corner", "without_fills",
-    "write_mesh",
+    "ligands", "obstacles", "read", "read_parts", "side_by_side", "stretched", "surface_of",
+    "walls", "warped", "with_last_coordinate", "with_vectors", "with_von_mises", "without_corner",
+    "without_fills", "write_mesh",
 ]  # fmt: skip

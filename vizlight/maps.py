@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 
 __all__ = ["bands", "directions", "even", "heights", "kinds", "speed"]
 
-#: Colours of kinds that a reader tells apart, also without green cones: Paul Tol's bright set, then
-#: others, each as far as can be from those before it, from the grey of missing values and paper.
+#: Muted colours of kinds that a reader tells apart, also without green cones: of much the same
+#: chroma, as far as can be from each other, from the grey of missing values and from paper.
 _KINDS = (
-    "#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#bbbbbb", "#333388",
-    "#335533", "#aa99ff", "#aa6600", "#ffbb88", "#aaddaa", "#772200", "#553355", "#996666",
+    "#5c6d9f", "#e2a78a", "#84b794", "#9a585a", "#6cbcdf", "#7e713f", "#cd99c2", "#197779",
+    "#9ba265", "#f8aeb9", "#bbbee3", "#426636", "#a48477", "#907c91", "#585e56", "#90a2a0",
 )  # fmt: skip
 #: Name of the map of directions, whose ends are alike.
 CYCLIC = "vizlight.cyclic"

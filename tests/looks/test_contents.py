@@ -5,7 +5,7 @@ import pytest
 import pyvista as pv
 
 import vizlight
-from vizlight.looks.contents import Contents, Named, sorted_arrays
+from vizlight.looks.contents import Contents, Named, kinds_of, sorted_arrays
 from vizlight.mesh import georeference, meaning
 
 
@@ -14,6 +14,17 @@ def of(**arrays):
     for name, values in arrays.items():
         mesh[name] = values(mesh.n_points)
     return Contents(mesh)
+
+
+def test_the_largest_kinds_are_those_of_the_largest_areas():
+    # A plate of two triangles beside small balls of many.
+    parts = [pv.Plane(i_size=50, j_size=50, i_resolution=1, j_resolution=1)]
+    parts += [pv.Sphere(radius=1.0 + 0.1 * i) for i in range(3)]
+    for kind, part in enumerate(parts):
+        part.clear_data()
+        part.cell_data["part"] = np.full(part.n_cells, kind)
+    whole = pv.merge(parts, merge_points=False).extract_surface(algorithm="dataset_surface")
+    assert kinds_of(whole, "part", 3) == [0, 2, 3]
 
 
 def rising(n):

@@ -344,6 +344,30 @@ def test_walls_toward_the_eye_are_left_out_whatever_the_order_of_corners():
     assert np.all(np.einsum("ij,ij->i", outward, hull.face_normals) > 0)
 
 
+@pytest.mark.parametrize(
+    ("heat", "is_colored"), [("height", True), ("constant", False), ("none", False)]
+)
+def test_what_stands_in_a_flow_has_the_colours_of_its_lines_where_they_differ(heat, is_colored):
+    grid = pv.ImageData(dimensions=(16, 16, 16)).cast_to_unstructured_grid()
+    inside = np.all(np.abs(grid.cell_centers().points - (8, 8, 0)) < (3, 3, 8), axis=1)
+    volume = grid.extract_cells(~inside)
+    volume.clear_data()
+    x, y, z = np.asarray(volume.points).T
+    volume["wind"] = np.column_stack([1 + y, 0 * y, 0 * y])
+    if heat != "none":
+        volume["temperature"] = 300 + (z if heat == "height" else np.where(x < 2, 1.0, 5.0))
+    layers = vizlight.look(volume, "flow", seeds=20).drawing.layers
+    lines, hull = layers[0], next(layer for layer in layers if layer.mesh.name == "hull")
+    assert ("scalars" in hull.keywords) is is_colored
+    if is_colored:
+        assert hull.keywords["clim"] == lines.keywords["clim"]
+        assert hull.keywords["cmap"] == lines.keywords["cmap"]
+        warm = hull.mesh.run()
+        warm = warm.extract_points(warm.points[:, 2] > 0, adjacent_cells=False, include_cells=False)
+        on_block = np.all(np.abs(warm.points - (8, 8, 0)) < (3.1, 3.1, 8.1), axis=1)
+        assert np.array_equal(np.isfinite(warm["temperature"]), on_block)
+
+
 def test_streamlines_have_the_colours_of_the_temperature_that_they_carry():
     volume = pv.ImageData(dimensions=(9, 9, 9))
     x, y, _ = np.asarray(volume.points).T

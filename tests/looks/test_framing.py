@@ -1,5 +1,7 @@
 """From where data are seen: maps from above, patches along their normal, solids from a side."""
 
+import itertools
+
 import numpy as np
 import pytest
 import pyvista as pv
@@ -79,6 +81,26 @@ def test_the_side_that_shows_most_kinds_is_seen(sign):
         part.cell_data["part"] = np.full(part.n_cells, kind)
     whole = pv.merge(parts, merge_points=False).extract_surface(algorithm="dataset_surface")
     assert eye_of(whole, Contents(whole), "part").toward[1] * sign > 0.3
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_a_case_of_thin_walls_is_seen_from_its_open_side(axis, sign):
+    # Thin walls are seen from behind too; two balls are inside.
+    walls = []
+    for i, end in itertools.product(range(3), (-1, 1)):
+        sizes, middle = np.full(3, 6.0), np.zeros(3)
+        sizes[i], middle[i] = 0.1, 3.0 * end
+        if (i, end) != (axis, sign):
+            bounds = np.column_stack([middle - sizes / 2, middle + sizes / 2]).ravel()
+            walls.append(pv.Box(bounds))
+    case = pv.merge(walls, merge_points=False)
+    parts = [case, *(pv.Sphere(radius=1.0, center=(0, 0, z)) for z in (-1.5, 1.5))]
+    for kind, part in enumerate(parts):
+        part.clear_data()
+        part.cell_data["solid"] = np.full(part.n_cells, kind)
+    whole = pv.merge(parts, merge_points=False).extract_surface(algorithm="dataset_surface")
+    assert eye_of(whole, Contents(whole), "solid").toward[axis] * sign > 0.5
 
 
 def test_the_side_that_shows_most_of_the_values_is_seen():

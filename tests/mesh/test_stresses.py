@@ -57,7 +57,11 @@ def test_a_solid_with_stresses_shows_them_whatever_moves_it():
 
 @pytest.mark.parametrize(
     ("largest", "factor", "words"),
-    [(0.5, 1, "; displaced"), (1e-3, 500, "; displaced 500 times"), (50.0, None, "")],
+    [
+        (0.5, 1, "; displaced, true to scale"),
+        (1e-3, 500, "; displaced 500 times"),
+        (50.0, None, ""),
+    ],
 )
 def test_a_solid_with_stresses_is_displaced_so_that_it_is_seen(largest, factor, words):
     mesh = bar([[1, 0, 0, 0, 0, 0], [2, 0, 0, 0, 0, 0]])
@@ -73,6 +77,31 @@ def test_a_solid_with_stresses_is_displaced_so_that_it_is_seen(largest, factor, 
     assert all(edges.bounds == mesh.bounds for edges in outline)
     # Who asks for other vectors has these.
     assert vizlight.look(mesh, warp="U", exaggeration=2.0).mesh.bounds[5] == 1 + 2 * largest
+
+
+@pytest.mark.parametrize(
+    ("peaks", "word"), [([0.0], "highest 52,300"), ([0.0, 30.0], ""), ([15.0], "")]
+)
+def test_a_single_highest_stress_that_has_room_beside_it_is_marked(peaks, word):
+    plate = pv.Plane(center=(15, 3, 0), i_size=30, j_size=6, i_resolution=30, j_resolution=6)
+    plate.points[:, 2] = np.abs(plate.points[:, 0] - 15) / 10
+    far = np.min([np.hypot(*(plate.points[:, :2] - (x, 3)).T) for x in peaks], axis=0)
+    plate["S_Mises"] = 52345 * np.exp(-far / 3)
+    drawing = vizlight.look(plate, view="z").drawing
+    layers = drawing.layers
+    assert len(drawing.of_turns.layers) == len(layers) - 2 * bool(word)
+    words = [layer.mesh.keywords.get("names") for layer in layers]
+    assert ([word] in words) is bool(word)
+    spots = [layer.mesh.run() for layer in layers if "point_size" in layer.keywords]
+    assert [spot.points[0].tolist() for spot in spots] == [[peaks[0], 3, 1.5]] * bool(word)
+
+
+def test_edges_of_elements_that_are_too_fine_are_left_out():
+    for count, is_drawn in ((20, True), (70, False)):
+        ball = pv.Sphere(theta_resolution=count, phi_resolution=count // 2)
+        ball["S_Mises"] = ball.points[:, 0]
+        layer = vizlight.look(ball, size=(300, 200)).drawing.layers[0]
+        assert layer.keywords.get("show_edges", False) is is_drawn
 
 
 def test_an_array_that_is_no_tensor_is_named():

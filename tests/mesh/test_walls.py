@@ -47,6 +47,19 @@ def test_what_stands_outside_of_a_solid_is_no_wall():
         files.walls(3)
 
 
+def test_obstacles_are_inside_of_the_hull_that_a_flow_fills():
+    shell = pv.SolidSphere(inner_radius=1.0, outer_radius=2.0)
+    shell = shell.extract_surface(algorithm="dataset_surface")
+    bent = pv.Spline(np.array([[0, 0, 0], [3, 0, 0], [3, 3, 0]]), 40).tube(radius=0.3)
+    for surface, is_filled in ((shell, True), (bent, False)):
+        surface["heat"] = np.ones(surface.n_points)
+        inner = np.isfinite(files.obstacles(surface, "heat")["heat"])
+        near = np.linalg.norm(surface.points, axis=1) < 1.5
+        assert np.array_equal(inner, near & is_filled)
+    with pytest.raises(ValueError, match="name: expected the name of a point array"):
+        files.obstacles(shell, "cold")
+
+
 def test_walls_beside_quadratic_cells():
     """VTK's numbers of the cells of faces are others where some cells are quadratic."""
     shell = pv.SolidSphere(inner_radius=1.0, outer_radius=20.0)

@@ -36,17 +36,21 @@ def round_length(most: float) -> float:
 
 
 def numerals_of(values: Sequence[float]) -> list[str]:
-    """Return the digits of round numbers with even steps, with as many places as these need."""
+    """Return the digits of round numbers with even steps, with as many places as these need.
+
+    Thousands are parted where a number has more than four digits before the point.
+    """
     size = max(abs(value) for value in values)
     if size >= 1e6 or 0 < size < 1e-3:
         words = [_power(value) for value in values]
         # Places of large numbers may differ in their last digits.
-        return words if len({*words}) == len(words) else [f"{value:.12g}" for value in values]
+        return words if len({*words}) == len(words) else [f"{value:,.12g}" for value in values]
+    comma, digits = (",", 6) if size >= 1e4 else ("", 4)
     if len(values) < 2:
-        return [f"{value:.4g}" for value in values]
+        return [f"{value:{comma}.{digits}g}" for value in values]
     step = min(abs(b - a) for a, b in itertools.pairwise(values))
     places = next(n for n in range(12) if abs(step - round(step, n)) < 1e-6 * step)
-    return [f"{value:.{places}f}" for value in values]
+    return [f"{value:{comma}.{places}f}" for value in values]
 
 
 def even_numbers(low: float, high: float, most: int = 5) -> list[tuple[float, str]]:

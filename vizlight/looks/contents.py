@@ -656,10 +656,15 @@ def kinds_of(mesh: pv.DataSet, name: str, most: int | None = None) -> Sequence[f
     From ``most`` kinds on the largest alone are returned, if these fill nearly all.
     """
     values = np.asarray(mesh.point_data[name] if name in mesh.point_data else mesh.cell_data[name])
-    kinds, counts = np.unique(values[np.isfinite(values)], return_counts=True)
+    is_finite = np.isfinite(values)
+    kinds, place = np.unique(values[is_finite], return_inverse=True)
     if most is not None and len(kinds) > most:
-        largest = np.sort(np.argsort(-counts, kind="stable")[:most])
-        if counts[largest].sum() >= NEARLY_ALL * counts.sum():
+        areas = None
+        if isinstance(mesh, pv.PolyData) and name not in mesh.point_data:
+            areas = mesh.compute_cell_sizes(length=False, volume=False)["Area"][is_finite]
+        sizes = np.bincount(place.reshape(-1), areas)
+        largest = np.sort(np.argsort(-sizes, kind="stable")[:most])
+        if sizes[largest].sum() >= NEARLY_ALL * sizes.sum():
             kinds = kinds[largest]
     every: list[float] = kinds.tolist()
     return every

@@ -52,7 +52,7 @@ RIGHTWARD = 0.1
 PIXELS = 64
 #: Width over height of the place for data in a picture.
 ASPECT = 1.2
-#: Places of triangles that hide others, where there are few triangles.
+#: Number of places of triangles that hide others.
 SPLATS = 8000
 #: Number of triangles by which the light of the visible surface is measured.
 SEEN = 1000
@@ -331,9 +331,7 @@ def _lies_along_y(corners: Array, areas: Array) -> bool:
     """Return whether a surface is its own mirror image in y and not in z."""
     if not areas.sum() > 0:
         return False
-    random = np.random.default_rng(0)
-    chosen = random.choice(len(corners), MIRRORED, p=areas / areas.sum())
-    places = np.einsum("sk,skx->sx", random.dirichlet(np.ones(3), MIRRORED), corners[chosen])
+    places = _spread_over(corners, areas, MIRRORED)
     tree = scipy.spatial.cKDTree(places)
     distances: Array = np.asarray(tree.query(places, k=2)[0])
     apart = np.median(distances[:, 1])
@@ -516,7 +514,7 @@ def eye_opposite(
         return None
     corners, normals = _with_normals(corners)
     areas = np.linalg.norm(normals, axis=1)
-    if not areas.sum() > 0 or np.linalg.norm(normals.sum(axis=0)) > CLOSED * areas.sum():
+    if not areas.sum() > 0 or not _is_closed(normals, areas):
         return None
     places, toward, up = _places(corners), np.asarray(eye.toward), np.asarray(eye.up)
     front = _in_front(places, len(corners), toward)
@@ -540,6 +538,10 @@ def eye_opposite(
     seen = {word: hidden[_in_front(places, len(corners), way)].sum() for word, way in ways.items()}
     word = max(seen, key=lambda name: float(seen[name]))
     return Viewpoint(_vector(ways[word]), eye.up, True, word)
+
+
+def _is_closed(normals: Array, areas: Array) -> bool:
+    return bool(np.linalg.norm(normals.sum(axis=0)) <= CLOSED * areas.sum())
 
 
 def apart(values: Array, weights: Array, others: Array) -> float:
@@ -604,8 +606,9 @@ def _seen(
     the mean share of each that is seen.
     """
     right, up = _plane(way)
-    # Open surfaces are seen from both sides.
-    cosines = np.abs(normals @ way) / np.where(areas > 0, areas, 1)
+    facing = normals @ way / np.where(areas > 0, areas, 1)
+    # Open surfaces are seen from both sides, thin walls of kinds from that which faces the eye.
+    cosines = facing if has_kinds and _is_closed(normals, areas) else np.abs(facing)
     front = areas * _in_front(places, len(corners), way) * (cosines > 0.15)
     seen = float(front.sum())
     if values is not None:
@@ -642,11 +645,18 @@ def _spread(values: Array, weights: Array) -> float:
 
 def _places(corners: Array) -> Array:
     """Return the middles of triangles, then places of these that hide others behind them."""
-    middles = corners.mean(axis=1)
+    areas = np.linalg.norm(_with_normals(corners)[1], axis=1)
     # Large triangles hide what is behind more than their middles.
-    count = math.ceil(SPLATS / max(len(corners), 1))
-    shares = np.random.default_rng(0).dirichlet(np.ones(3), count)
-    return np.concatenate([middles, np.einsum("sk,nkx->nsx", shares, corners).reshape(-1, 3)])
+    others = [_spread_over(corners, areas, SPLATS)] if areas.sum() > 0 else []
+    return np.concatenate([corners.mean(axis=1), *others])
+
+
+def _spread_over(corners: Array, areas: Array, count: int) -> Array:
+    """Return places of triangles, as many on each as its area is large."""
+    random = np.random.default_rng(0)
+    chosen = random.choice(len(corners), count, p=areas / areas.sum())
+    places: Array = np.einsum("sk,skx->sx", random.dirichlet(np.ones(3), count), corners[chosen])
+    return places
 
 
 def _in_front(places: Array, count: int, way: Array) -> Bools:
@@ -665,6 +675,31 @@ def _in_front(places: Array, count: int, way: Array) -> Bools:
     # Cells in neighbouring pixels differ by a slope of up to two.
     front: Bools = depth[:count] >= nearest.reshape(-1)[pixel[:count]] - 4 * size / PIXELS
     return front
+
+
+def places_on(surface: pv.PolyData) -> Array:
+    """Return places all over a surface, (N, 3), its points and others by the area of its triangles.
+
+    Parameters
+    ----------
+    surface : pyvista.PolyData
+    """
+    return np.concatenate([surface.points, _places(_triangles(surface)[1])])
+
+
+def sees(places: Array, place: Array, way: Array) -> bool:
+    """Return whether an eye at infinity sees a place on a surface.
+
+    Parameters
+    ----------
+    places : ndarray, shape (N, 3)
+        Places of the surface, by :func:`places_on`.
+    place : ndarray, shape (3,)
+        Place.
+    way : ndarray, shape (3,)
+        Unit vector toward the eye.
+    """
+    return bool(_in_front(np.concatenate([[place], places]), 1, way)[0])
 
 
 def seen_triangles(surface: pv.PolyData, toward: Vector) -> Indices:

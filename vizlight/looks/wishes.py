@@ -245,7 +245,7 @@ class Wishes:
         words: Keywords = {"unit": self.bar, "names": ()}
         if ends:
             words["ends"] = [list(ends)]
-        return self._captions(mesh, camera, spare, **words)
+        return self.words_around(mesh, camera, spare, **words)
 
     def names_of(self, blocks: Step, camera: Step, spare: float = 1.0) -> Step:
         """Return the step that makes the words and the bar of lengths around several views."""
@@ -254,16 +254,17 @@ class Wishes:
         words: Keywords = {"unit": views.unit or self.bar}
         if views.ends:
             words["ends"] = [list(pair) for pair in views.ends]
-        return self._captions(blocks, camera, spare, **words)
+        return self.words_around(blocks, camera, spare, **words)
 
     def around_insets(self, blocks: Step, camera: Step, insets: Sequence[Inset]) -> Step:
         """Return the step that makes the words around insets."""
         words: Keywords = {"names": [inset.name for inset in insets]}
         if all(inset.ends for inset in insets):
             words["ends"] = [list(inset.ends) for inset in insets]
-        return self._captions(blocks, camera, 1.0, **words)
+        return self.words_around(blocks, camera, 1.0, **words)
 
-    def _captions(self, meshes: object, camera: Step, spare: float, **words: object) -> Step:
+    def words_around(self, meshes: object, camera: Step, spare: float, **words: object) -> Step:
+        """Return the step that makes words around meshes, as :func:`~vizlight.render.captions`."""
         size = round(spare * SMALL * LETTERS * min(self.size), 1)
         height = round(self.room[1], 1)
         return Step("captions", CAPTIONS, meshes, camera, height, size=size, **words)

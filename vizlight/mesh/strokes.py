@@ -52,7 +52,7 @@ class Arrow(NamedTuple):
 
 #: Strokes that lie on a surface or move, and those in space, which are drawn as tubes with cones,
 #: and go on from one to the next without a break.
-FLAT, TUBE = Arrow(0.1, 0.3, 0.15), Arrow(0.1, 0.4, 0.25, 0.1)
+FLAT, TUBE = Arrow(0.1, 0.3, 0.15), Arrow(0.25, 0.5, 0.1, 0.1)
 
 
 class LineSegments(NamedTuple):

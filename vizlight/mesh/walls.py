@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pyvista as pv
+import scipy
 
 from vizlight import _check
-from vizlight._types import Bools
+from vizlight._types import Array, Bools
 from vizlight.mesh import blocks, joining
 from vizlight.vtk.cells import connectivity
 from vizlight.vtk.corners import SHARP
@@ -18,6 +19,11 @@ ENCLOSED, ATTACHED = 5.0, 20.0
 #: Distance of points that are one, as a share of the size of the mesh: blocks have points of their
 #: own where they meet.
 ROUNDING = 1e-9
+#: Most points of a convex hull and rows of distances from it, and distance of a place that is on
+#: it, as a share of the size of the mesh.
+SAMPLE, ON_HULL = 1000, 0.01
+#: Least share of a convex hull that a mesh with obstacles fills.
+FILLED = 0.8
 #: Name of the temporary array of ways from the middle of a cell to that of its face.
 _OUTWARD = "vizlight outward"
 
@@ -80,6 +86,74 @@ def walls(volume: pv.DataSet, /) -> pv.PolyData:
     walls = _faces(surface, inner)
     walls.clear_data()
     return walls
+
+
+def obstacles(surface: pv.PolyData, name: str, /) -> pv.PolyData:
+    """Return the outer surface of a volume with values at the walls that stand inside alone.
+
+    Those are inside of its convex hull by 0.01 of its size, of a volume that fills it: on 0.8 of
+    the area of the convex hull there are faces.
+
+    Parameters
+    ----------
+    surface : pyvista.PolyData
+        Outer surface, with points of their own on either side of its sharp edges.
+    name : str
+        Name of a point array of values.
+
+    Returns
+    -------
+    pyvista.PolyData
+        The same surface; elsewhere its values are NaN.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no surface, or has no such array.
+
+    Examples
+    --------
+    >>> import pyvista as pv
+    >>> from vizlight import files
+    >>> shell = files.surface_of(pv.SolidSphere(inner_radius=1.0, outer_radius=2.0))
+    >>> shell["heat"] = [1.0] * shell.n_points
+    >>> inner = files.obstacles(shell, "heat").threshold(0.0, scalars="heat")
+    >>> round(inner.length, 1)
+    3.5
+    """
+    _check.instance("surface", surface, pv.PolyData, "the surface of a volume")
+    if name not in surface.point_data:
+        raise _check.value_error("name", "the name of a point array", name)
+    walls: pv.PolyData = surface.copy(deep=False)
+    values = np.array(surface.point_data[name], dtype=np.float64)
+    ids, ends = connectivity(surface.GetPolys())
+    of_faces = np.repeat(np.arange(len(ends) - 1), np.diff(ends))
+    # Cells of points and lines come before faces.
+    first = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
+    stands_inside: Bools = np.zeros(surface.n_points, dtype=np.bool_)
+    stands_inside[ids] = True
+    stands_inside[ids[_are_on_hull(surface)[first + of_faces]]] = False
+    walls.point_data[name] = np.where(stands_inside, values, np.nan)
+    return walls
+
+
+def _are_on_hull(surface: pv.PolyData) -> Bools:
+    """Return whether faces of a surface are on its convex hull; all are if it does not fill it."""
+    every: Bools = np.ones(surface.n_cells, dtype=np.bool_)
+    points: Array = np.asarray(surface.points, dtype=np.float64)
+    try:
+        hull = scipy.spatial.ConvexHull(points[:: max(len(points) // SAMPLE, 1)])
+    except (scipy.spatial.QhullError, ValueError):
+        return every  # flat, or not finite
+    planes = np.unique(np.round(hull.equations, 6), axis=0)
+    middles: Array = np.asarray(surface.cell_centers().points, dtype=np.float64)
+    depths = [
+        (middles[i : i + SAMPLE] @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+        for i in range(0, len(middles), SAMPLE)
+    ]
+    are_on = np.concatenate(depths) > -ON_HULL * surface.length
+    areas = surface.compute_cell_sizes(length=False, volume=False)["Area"]
+    return are_on if areas[are_on].sum() > FILLED * hull.area else every
 
 
 def _joined(volume: pv.DataSet) -> pv.PolyData:

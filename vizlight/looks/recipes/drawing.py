@@ -73,7 +73,7 @@ THIN = 1.5 / (85 / 25.4 * 300)
 #: Most kinds that have a key: more of them share colours.
 MOST_IN_KEY = 16
 #: Colour of a value that is the only one.
-ONLY = "#4477aa"
+ONLY = "#5c6d9f"
 #: Colour of the borders of surfaces, and keywords of what stands beside the data.
 DARK, BESIDE = "#333333", {"pickable": False}
 #: Most letters of a short form, such as SST, which stays in capitals.
@@ -92,6 +92,8 @@ ON_BOX, CUT = 1e-3, 0.95
 
 #: Functions that make letters that face the eye of the picture.
 FACING = ("render.box_axes", "render.captions")
+#: Name of the step of a place beside which such letters stand.
+PLACE = "place"
 #: Least cosine between an axis and a side of the picture along which it runs.
 ALONG = 0.99
 
@@ -207,7 +209,7 @@ class Drawing:
                 framed = first.keywords.get("around", surface)
                 camera = Step("camera", camera.path, framed, toward, **camera.keywords)
                 layer = dataclasses.replace(layer, mesh=surface)
-            if step.path not in FACING:
+            if step.path not in FACING and step.name != PLACE:
                 kept.append(layer)
         return dataclasses.replace(self, layers=kept, camera=camera, insets=(), picture_camera=None)
 
@@ -608,7 +610,7 @@ class Case:
             return ""
         factor = float(step.arguments[2])  # type: ignore[arg-type]
         if step.name == DISPLACED:
-            return "; displaced" if factor == 1 else f"; displaced {factor:g} times"
+            return f"; displaced{', true to scale' if factor == 1 else f' {factor:g} times'}"
         return times_as_high(factor)
 
     @property

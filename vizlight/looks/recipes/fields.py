@@ -58,7 +58,7 @@ STEP, FINEST = 0.125, 0.3
 #: Width of the head of a stroke as a share of its length, and its least and largest one in least
 #: widths of lines: on maps, where wider ones darken what is beside them for the eye, on surfaces
 #: that bend, where thinner ones tell as much, and in volumes.
-HEAD_WIDTH, WIDTHS, WIDTHS_ON_SURFACE, WIDTHS_IN_VOLUME = 0.7, (3.0, 4.0), (2.6, 3.4), (4.0, 8.0)
+HEAD_WIDTH, WIDTHS, WIDTHS_ON_SURFACE, WIDTHS_IN_VOLUME = 0.7, (3.0, 4.0), (2.6, 3.4), (4.0, 5.5)
 #: Length below which lines on surfaces are left out, in distances between strokes: loops so small
 #: are blots.
 SHORTEST_ON_SURFACE = 2.0
@@ -69,7 +69,7 @@ SPEED = "vizlight.speed"
 SPACINGS_IN_VOLUME = (1 / 16, 1 / 25)
 #: Length of strokes in a volume, and length below which streamlines are left out, in these
 #: distances: many are cut short, or turn on the spot, where the field is noise.
-LONG_IN_VOLUME, SHORTEST = 5.0, 4
+LONG_IN_VOLUME, SHORTEST = 7.0, 4
 #: Largest width of those without a sense, and the halo of all.
 WIDE_IN_VOLUME, HALO_IN_VOLUME = 2.0, 0.15
 #: Colours of the floor of a volume, and how far it is below the box as a share of its size.
@@ -347,7 +347,7 @@ def flow(case: Case) -> Drawing:
         ]
     layers = [lines]
     if case.map_frame is None:
-        layers += [*_hull(case, mesh), *_floor(case, box, camera), *case.boxed(box, camera)]
+        layers += [*_hull(case, mesh, drawn), *_floor(case, box, camera), *case.boxed(box, camera)]
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
 
 
@@ -496,19 +496,32 @@ def _left_out(lines: Step) -> int:
     return int(lines.run().field_data.get("left_out", [0])[0])
 
 
-def _hull(case: Case, mesh: Step) -> list[Layer]:
+def _hull(case: Case, mesh: Step, drawn: Keywords) -> list[Layer]:
     """Return the layer of the inner sides of the hull of a volume, none for a box.
 
-    What the flow goes around is seen as a solid, and the walls toward the eye are left out.
+    What the flow goes around is seen as a solid, in the colours of the values of the lines where
+    they differ on it, and the walls toward the eye are left out.
     """
     if isinstance(mesh.run(), pv.ImageData | pv.RectilinearGrid):
         return []
     surface = Step("surface", ".extract_surface", mesh, algorithm="dataset_surface")
     # Cells whose corners are in the other order have walls that face inward.
     outward: Keywords = {"auto_orient_normals": True, "cell_normals": False}
+    outward["split_vertices"] = True
     hull = Step("hull", ".compute_normals", surface, **outward)
-    drawn = {"color": WALLS[case.wishes.style], "culling": "front", **WALL_LIGHT}
-    return [Layer(hull, drawn, live=False)]
+    shown: Keywords = {"color": WALLS[case.wishes.style]}
+    name = str(drawn.get("scalars"))
+    if name in mesh.run().point_data:
+        inner = Step("hull", "files.obstacles", hull, name)
+        values = inner.run().point_data[name]
+        low, high = drawn["clim"]
+        values = np.clip(values[np.isfinite(values)], low, high)
+        if values.size and np.ptp(values) > EVEN * (high - low):
+            table = {key: drawn[key] for key in ("scalars", "cmap", "clim")}
+            shown = {**table, "nan_color": shown["color"], "show_scalar_bar": False}
+            hull = inner
+    shown |= {"culling": "front", **WALL_LIGHT}
+    return [Layer(hull, shown, live=False)]
 
 
 def _floor(case: Case, box: Step, camera: Step) -> list[Layer]:

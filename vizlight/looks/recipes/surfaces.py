@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -9,9 +10,12 @@ import numpy as np
 import pyvista as pv
 import scipy
 
-from vizlight.draw.ticks import USUAL, even_levels
+from vizlight.draw.cameras import axes_of
+from vizlight.draw.margins import LETTERS
+from vizlight.draw.ticks import USUAL, even_levels, numerals_of
 from vizlight.filters.fur import LENGTH
 from vizlight.looks.contents import SAMPLE, WHITE, Contents, is_of_kinds, kinds_of
+from vizlight.looks.framing import places_on, sees
 from vizlight.looks.ranges import Range
 from vizlight.looks.recipes.drawing import (
     BESIDE,
@@ -19,6 +23,7 @@ from vizlight.looks.recipes.drawing import (
     LIGHTNESS,
     MOST_IN_KEY,
     ON_SURFACES,
+    PLACE,
     Drawing,
     Layer,
     colors_in,
@@ -31,10 +36,12 @@ from vizlight.looks.recipes.drawing import (
 )
 from vizlight.looks.recipes.fields import pixel_of
 from vizlight.looks.steps import DISPLACED, Step
+from vizlight.looks.wishes import SMALL
 from vizlight.mesh import blocks, georeference, meaning
 from vizlight.mesh.nspace import POSITION
+from vizlight.mesh.stresses import is_von_mises
 from vizlight.reading import brains
-from vizlight.vtk import hull
+from vizlight.vtk import hull, letters
 from vizlight.vtk.cells import dimensions
 
 if TYPE_CHECKING:
@@ -48,8 +55,12 @@ if TYPE_CHECKING:
 LIGHT_GREY, MOST_WITH_EDGES = "#bcbcbc", 5000
 #: Note on the walls of a body in a flow.
 ONLY_WALLS = "the walls inside of the mesh are drawn, its far field is left out"
-#: Opacity of the edges of elements, and outline of a solid before it is displaced.
-FAINT, BEFORE = 0.35, {"color": "#8a8a8a"}
+#: Opacity of the edges of elements, least length of most of them in pixels beside values, and
+#: outline of a solid before it is displaced.
+FAINT, FINE, BEFORE = 0.35, 6.0, {"color": "#8a8a8a"}
+#: Share of the range of a stress from which a place belongs to a peak, and largest size of a single
+#: one as a share of that of the mesh; width of its dot in those of lines.
+PEAK, SINGLE, DOT = 0.9, 0.2, 5.0
 #: Length in pixels from which isolines on a solid are long, least share of their length in long
 #: ones, and least distance between them in pixels.
 LONG, SMOOTH, APART = 100.0, 0.9, 30.0
@@ -134,7 +145,7 @@ def values(case: Case) -> Drawing:
     elif array.role == "colors":
         keywords = {"rgb": True}
     shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **keywords}
-    shown |= case.wishes.drawn(light) | _elements(case, mesh)
+    shown |= case.wishes.drawn(light) | _elements(case, mesh, camera)
     lit = case.lit(mesh, scene, **light)
     keys = [] if array.role == "colors" else [case.bar(array, keywords)]
     words = f"{array.name} in colours"
@@ -145,6 +156,7 @@ def values(case: Case) -> Drawing:
         more, keys = _notes_on_kinds(case, mesh, keys[0])
         notes = [*notes, *more]
     layers = [Layer(mesh, shown), *edges.edges(camera), *case.strokes([outline], **BEFORE)]
+    layers += _peak(case, mesh, camera)
     drawing = Drawing(
         layers, camera, scene, lit,
         words, keys,
@@ -194,12 +206,61 @@ def _undisplaced(case: Case) -> Step | None:
     return edges if edges.run().n_cells else None
 
 
-def _elements(case: Case, mesh: Step) -> Keywords:
+def _elements(case: Case, mesh: Step, camera: Step) -> Keywords:
     """Return the drawing of edges of the cells that stresses, or values of a solid, belong to."""
     of_cells = case.needed_array.of_cells and case.contents.dimension == 3
     # The surface of curved cells is in triangles, which are none of the elements.
     is_wanted = (of_cells or case.contents.is_strained) and not hull.is_curved(case.data.run())
-    return _edges_of_cells(mesh) if is_wanted else {}
+    if not is_wanted or not mesh.run().n_cells:
+        return {}
+    areas = mesh.run().compute_cell_sizes(length=False, volume=False)["Area"]
+    is_fine = np.sqrt(np.median(areas)) < FINE * pixel_of(case, camera)
+    return {} if is_fine else _edges_of_cells(mesh)
+
+
+def _peak(case: Case, mesh: Step, camera: Step) -> list[Layer]:
+    """Return the layers that mark the highest stress with a dot and a word beside the mesh.
+
+    None are where it is no single one, is not seen, or the picture has no room for the word.
+    """
+    array, surface, eye = case.needed_array, mesh.run(), camera.run()
+    is_alone = case.wishes.views is None and case.wishes.frame is None
+    if not (is_alone and is_von_mises(array.name) and isinstance(surface, pv.PolyData)):
+        return []
+    values: Array = np.nan_to_num(np.asarray(surface[array.name], dtype=np.float64))
+    places = surface.cell_centers() if array.of_cells else surface
+    points: Array = np.asarray(places.points, dtype=np.float64)
+    if not values.size or not np.ptp(values):
+        return []
+    peak, way, filled = points[np.argmax(values)], np.negative(eye.direction), places_on(surface)
+    high = points[values >= values.min() + PEAK * np.ptp(values)]
+    is_single = np.linalg.norm(high - peak, axis=1).max() < SINGLE * surface.length
+    if not is_single or not sees(filled, peak, way):
+        return []
+    factor, unit = meaning.usual_unit(surface, array.name, float(values.max()))
+    word = f"highest {numerals_of([float(f'{values.max() / factor:.3g}')])[0]} {unit}".rstrip()
+    size, pixel = SMALL * LETTERS * min(case.wishes.size), pixel_of(case, camera)
+    across, room = axes_of(way, eye.up)[:2], np.array(case.wishes.room) / pixel / 2
+    wide, tall = letters.width(word) * size * pixel, size * pixel
+    # Above, beside and below the peak, first near it.
+    shifts = itertools.product(
+        (0.3, 0.8, 1.5), ((0, 1), (1, 0), (-1, 0), (1, -1), (-1, -1), (0, -1))
+    )
+    for apart, (x, y) in shifts:
+        middle = np.array([x * (wide / 2 + apart * tall), y * (0.5 + apart) * tall])
+        half = np.array([wide, tall]) / 2
+        beside = np.abs((filled - peak) @ across.T - middle) < half
+        ends = np.abs((peak - eye.focal_point) @ across.T + middle) + half
+        if not beside.all(axis=1).any() and np.all(ends < room):
+            spot, place = (
+                Step(name, "pyvista.PolyData", [[float(f"{part:.6g}") for part in at]])
+                for name, at in ((PLACE, peak), ("", peak + (middle - (0, 0.6 * tall)) @ across))
+            )
+            block = Step("", "pyvista.MultiBlock", [place])
+            text = case.wishes.words_around(block, camera, 1.0, names=[word])
+            dot: Keywords = {"point_size": DOT * case.width, "render_points_as_spheres": True}
+            return [*case.strokes([spot], **dot), case.inked(text)]
+    return []
 
 
 def _edges_of_cells(mesh: Step) -> Keywords:
