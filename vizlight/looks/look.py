@@ -438,10 +438,10 @@ def look(
         numbers), ``contour``, ``level`` (of an isosurface), ``warp``, ``exaggeration``, ``globe``
         (a map of the whole earth on a ball, a raised one with ``warp`` or ``exaggeration``). The
         light: ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the
-        question, such as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``,
-        ``clim``, ``key``, ``title`` (words above it), ``map_parts`` (those that are drawn of
-        "coasts", "frame" and "isolines"; () for none), ``up``, ``parallel``, ``zoom``, ``backend``.
-        A movie: ``frames``, ``fps``.
+        question, such as ``tangents``. The picture: ``background``, ``line_width``, ``scalars``
+        (an array that only colours the drawing), ``cmap``, ``clim``, ``key``, ``title`` (words
+        above it), ``map_parts`` (those that are drawn of "coasts", "frame" and "isolines"; () for
+        none), ``up``, ``parallel``, ``zoom``, ``backend``. A movie: ``frames``, ``fps``.
 
     Returns
     -------
@@ -848,7 +848,15 @@ def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
     if option == "tangents" and named.role != "vectors":
         got = f"{name!r} with {named.role}"
         raise value_error(option, "vectors, or names U,V of their components", got)
-    return named
+    # Colours of what is drawn along vectors.
+    only_colors = (
+        option == "scalars"
+        and named.role in ("values", "heights")
+        and wishes.question in ("auto", "direction", "heading", "flow")
+        and contents.flow is not None
+        and (contents.dimension == 3 or contents.flat_axis is not None)
+    )
+    return None if only_colors else named
 
 
 def _others(contents: Contents, case: Case, drawn: str) -> tuple[Other, ...]:
