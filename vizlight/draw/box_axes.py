@@ -213,15 +213,7 @@ def _box_of(mesh: Given) -> Array:
 
 
 class _Eye:
-    """Where points are in a picture, and the directions right and up in it.
-
-    Parameters
-    ----------
-    camera : pyvista.Camera
-        Camera.
-    height : float
-        Height of the picture in pixels.
-    """
+    """Where points are in a picture of a height in pixels, and what is right and up in it."""
 
     def __init__(self, camera: pv.Camera, height: float) -> None:
         _check.instance("camera", camera, pv.Camera, "a camera")

@@ -258,15 +258,7 @@ def _fit(
 
 
 def _rings(points: Array, up: Array) -> Array:
-    """Return the places of the outermost of some points in a turn about an axis.
-
-    Parameters
-    ----------
-    points : ndarray, shape (N, 3)
-        Points, in relation to a point of the axis.
-    up : ndarray, shape (3,)
-        Direction of the axis, of unit length.
-    """
+    """Return the places of the outermost points in a turn about a unit axis at the origin."""
     points = points[np.all(np.isfinite(points), axis=1)]
     if not len(points):
         return points

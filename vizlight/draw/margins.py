@@ -259,14 +259,7 @@ def _is_map(renderer: vtkRenderer) -> bool:
 
 
 def _box_of(renderer: vtkRenderer, *, data: bool) -> Array:
-    """Return left, low, right and top of the drawing of a renderer, in its pixels.
-
-    Parameters
-    ----------
-    renderer : vtkRenderer
-    data : bool
-        Whether the data alone count, which can be picked.
-    """
+    """Return left, low, right and top in pixels of a drawing, or of its data: what is picked."""
     wide, high = renderer.GetSize()
     corners: list[tuple[float, ...]] = []
     for actor in items(renderer.GetActors()):
@@ -654,17 +647,7 @@ def _with_beyond(
 
 
 def _thinned(places: list[float], zero: float, most: float) -> list[bool]:
-    """Return which of some places along a bar have words, so that these fit.
-
-    Parameters
-    ----------
-    places : list of float
-        Places, as shares of the length.
-    zero : float
-        Place of zero, from which its neighbours are counted.
-    most : float
-        Number of words that fit.
-    """
+    """Return which places, shares of a bar, have words if ``most`` fit, from that of zero."""
     if len(places) <= most:
         return [True] * len(places)
     every = next((n for n in (2, 5, 10, 20) if len(places) / n <= most), 50)

@@ -376,14 +376,7 @@ class Look:
 
 
 def _of_page(layer: Layer, away: float) -> Layer:
-    """Return a layer as a page has it.
-
-    Parameters
-    ----------
-    layer : Layer
-    away : float
-        Distance of the page's eye in that of the picture's.
-    """
+    """Return a layer as a page has it, whose eye is ``away`` times as far."""
     keywords = dict(layer.keywords)
     if "point_size" in keywords:
         keywords["point_size"] = round(keywords["point_size"] / away, 1)
@@ -527,17 +520,7 @@ def decide(data: object, wishes: Wishes) -> Look:
 
 
 def _decided(rule: Rule, case: Case, notes: Sequence[str], unread: int = 0) -> Look:
-    """Return the look of one mesh: the first that a reader can read.
-
-    Parameters
-    ----------
-    rule, case
-        What is drawn.
-    notes : sequence of str
-        What a reader should know.
-    unread : int
-        Number of drawings that are known to be unreadable.
-    """
+    """Return the look of one mesh: the first that a reader can read, after unread ones."""
     drawing = rule.recipe(case)
     for _ in range(unread):
         assert drawing.doubt is not None
