@@ -23,7 +23,7 @@ Result = TypeVar("Result")
 
 
 class _Method(Generic[Options, Result]):
-    """A filter as a method, with its signature and documentation; loaded when it is first used."""
+    """A filter as a method, with its signature and text, which ``load`` returns at first use."""
 
     def __init__(self, load: Callable[[], Callable[Concatenate[Foreign, Options], Result]]) -> None:
         self._load = load

@@ -97,7 +97,7 @@ PARTS = {
     "plot_read_slope": (0.42, 0.11, 0.85, 0.94),
     "plot_read_value": (0.5, 0.1, 1.0, 0.82),
     "plot_satin": (0.5, 0.54, 1.0, 0.99),
-    "plot_seeping_light": (0.67, 0.06, 1.0, 0.8),
+    "plot_seeping_light": (0.55, 0.1, 0.95, 0.8),
     "plot_sky": (0.46, 0.58, 0.68, 0.98),
     "plot_turning": (0.68, 0.55, 1.0, 1.0),
     "plot_terrain_day": (0.61, 0.05, 0.89, 0.48),

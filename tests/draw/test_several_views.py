@@ -83,8 +83,11 @@ def seen(camera, points):
 @pytest.mark.parametrize(("place", "scale"), [((1.6, 0.3, 0.5, 0.4), None), ((0, -3, 9, 9), 1.0)])
 def test_an_inset_is_seen_from_its_side_in_its_place_and_no_larger(place, scale):
     mesh = ellipsoid(4, 1, 3)
+    mesh["V"] = np.arange(3.0 * mesh.n_points).reshape(-1, 3)
     camera = camera_on(mesh, (0.6, -1, 0.4), parallel=True)
     turned = inset(mesh, camera, (0, 0, 1), place, up=(0, 1, 0))
+    lengths = np.linalg.norm(mesh["V"], axis=1)
+    np.testing.assert_allclose(np.linalg.norm(turned["V"], axis=1), lengths, rtol=1e-5)
     flat = seen(camera, turned.points)
     middle, sizes = (flat.max(axis=0) + flat.min(axis=0)) / 2, np.ptp(flat, axis=0)
     np.testing.assert_allclose(middle, place[:2], atol=1e-5)

@@ -188,6 +188,14 @@ def test_two_components_are_vectors_in_a_plane_alone():
     assert of(flow=lambda n: np.ones((n, 2))).arrays == ()
 
 
+def test_of_several_vectors_a_velocity_comes_first():
+    plane = pv.Plane(i_resolution=3, j_resolution=3)
+    for name, power in (("SV_BF_U", 1), ("SV_BF_V", 2), ("SV_U", 3), ("SV_V", 4)):
+        plane[name] = 0.1 + np.arange(16.0) ** power
+    assert vizlight.look(plane).array == "SV_U,SV_V"
+    assert vizlight.look(plane).drawing.keys[0]["title"].startswith("speed")
+
+
 def test_labels_may_be_floats_with_holes():
     image = pv.ImageData(dimensions=(80, 20, 1))
     labels = 7.0 * (np.arange(1600) % 80 // 4) + 300

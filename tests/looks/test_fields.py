@@ -35,6 +35,12 @@ def test_what_a_field_does_in_few_places_does_not_count():
     wild = np.asarray(grid.points)[:, 0] > 45
     grid["wind"][wild] = np.random.default_rng(0).normal(size=(wild.sum(), 3))
     assert fields.turn_of(grid, "wind") == pytest.approx(0.1, rel=1e-6)
+    # Cells that are small are few places, however many they are.
+    small = pv.ImageData(dimensions=(90, 90, 1), spacing=(1e-3, 1e-3, 1))
+    small["wind"] = np.random.default_rng(0).normal(size=(small.n_points, 3))
+    quads = [mesh.extract_surface(algorithm="dataset_surface") for mesh in (sheet(0.2), small)]
+    both = pv.merge(quads, merge_points=False)
+    assert fields.turn_of(both, "wind") == pytest.approx(0.1, rel=1e-6)
 
 
 def test_a_field_at_rest_does_not_turn():
@@ -377,6 +383,13 @@ def test_streamlines_have_the_colours_of_the_temperature_that_they_carry():
     assert look.summary.startswith("streamlines of wind in the colours of Temp")
     assert look.drawing.layers[0].keywords["scalars"] == "Temp"
     assert look.key[0]["title"] == "temperature; arrows point downstream"
+    # Who asks for colours of another array has them on the same lines, and on a section.
+    volume["p"] = np.asarray(volume.points) @ (1, 0.1, 0.01)
+    for part in ({}, {"slice": "z:4"}):
+        look = vizlight.look(volume, scalars="p", **part)
+        assert "wind" in look.summary
+        assert look.drawing.layers[0].keywords["scalars"] == "p"
+        assert look.drawing.keys[0]["title"].startswith("p; arrows")
     speed_drawing = vizlight.look(volume, "flow", array="wind", seeds=20).drawing
     assert speed_drawing.layers[0].keywords["scalars"] == "speed"
 

@@ -106,6 +106,15 @@ def test_blocks_of_other_dimensions_are_drawn_and_walls_of_a_volume_are_not():
         assert [part[0].max_cell_dimensionality for part in parts] == sizes
 
 
+def test_an_array_has_one_bar_though_it_is_drawn_in_two_ways():
+    volume = pv.ImageData(dimensions=(20, 20, 20))
+    volume["T"] = np.exp(-((np.asarray(volume.points) - 9.5) ** 2).sum(axis=1) / 40)
+    surface = pv.Sphere(center=(9.5, 9.5, 30))
+    surface["T"] = np.abs(np.asarray(surface.points)[:, 0] - 9.5)
+    look = vizlight.look([volume, surface], array="T")
+    assert len(look.drawing.keys) == 1
+
+
 def test_an_array_that_one_of_several_has_is_enough():
     bare = pv.Sphere(theta_resolution=12, phi_resolution=12, center=(3, 0, 0))
     look = vizlight.look([ball(0), bare], array="T", size=SIZE)

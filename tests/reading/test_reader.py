@@ -52,7 +52,7 @@ def test_names_of_arrays_are_one_line(tmp_path):
         ("i.dwg", b"x", "no reader takes '.dwg' files; convert it to"),
         ("i.molden", b"x", "obabel 'i.molden' -O 'i.pdb'"),
         ("i.txt", b"x,y,z", r"mesh = pyvista.PolyData\(rows of x, y, z\)"),
-        ("j.stp", b"x", "gmsh -2 -clcurv 20 'j.stp' -o 'j.stl'"),
+        ("j.stp", b"x", "gmsh -2 -bin -clcurv 48 'j.stp' -o 'j.stl'"),
         ("j.fbx", b"x", "assimp export 'j.fbx' 'j.glb'"),
         ("k.gz", b"x", "no reader takes '.gz' files; unpack it first"),
         # Headers that break off within a line.

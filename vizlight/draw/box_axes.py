@@ -200,10 +200,7 @@ def _box_of(mesh: Given) -> Array:
 
 
 class _Eye:
-    """Where points are in a picture, and the directions right and up in it.
-
-    The height of the picture is in pixels.
-    """
+    """Where points are in a picture of a height in pixels, and what is right and up in it."""
 
     def __init__(self, camera: pv.Camera, height: float) -> None:
         _check.instance("camera", camera, pv.Camera, "a camera")

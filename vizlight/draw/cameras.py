@@ -226,10 +226,7 @@ def _fit(
 
 
 def _rings(points: Array, up: Array) -> Array:
-    """Return the places of the outermost of some points in a turn about an axis.
-
-    Points are in relation to a point of the axis, which has unit length.
-    """
+    """Return the places of the outermost points in a turn about a unit axis at the origin."""
     points = points[np.all(np.isfinite(points), axis=1)]
     if not len(points):
         return points

@@ -252,10 +252,7 @@ def _is_map(renderer: vtkRenderer) -> bool:
 
 
 def _box_of(renderer: vtkRenderer, *, data: bool) -> Array:
-    """Return left, low, right and top of the drawing of a renderer, in its pixels.
-
-    With ``data`` the data alone count, which can be picked.
-    """
+    """Return left, low, right and top in pixels of a drawing, or of its data: what is picked."""
     wide, high = renderer.GetSize()
     corners: list[tuple[float, ...]] = []
     for actor in items(renderer.GetActors()):
@@ -606,10 +603,7 @@ def _with_beyond(
 
 
 def _thinned(places: list[float], zero: float, most: float) -> list[bool]:
-    """Return which of some places along a bar have words, so that these fit.
-
-    Places are shares of the length; neighbours are counted from ``zero``, and ``most`` words fit.
-    """
+    """Return which places, shares of a bar, have words if ``most`` fit, from that of zero."""
     if len(places) <= most:
         return [True] * len(places)
     every = next((n for n in (2, 5, 10, 20) if len(places) / n <= most), 50)

@@ -218,7 +218,7 @@ def _places(sizes: Array, aspect: float) -> Array:
 
 
 def _moved(mesh: Mesh, matrix: Array) -> Mesh:
-    """Return a mesh that is turned and shifted, with its vectors."""
+    """Return a mesh that is turned, shifted and scaled, with vectors of the same lengths."""
     if isinstance(mesh, pv.MultiBlock):
         return pv.MultiBlock([_moved(block, matrix) for block in all_blocks(mesh)])
     carried = mesh.point_data.active_normals
@@ -230,6 +230,7 @@ def _moved(mesh: Mesh, matrix: Array) -> Mesh:
         moved: pv.DataSet = mesh.copy(deep=False).transform(
             matrix, transform_all_input_vectors=True, inplace=False
         )
+    scale = float(np.cbrt(np.linalg.det(matrix[:3, :3])))
     # Whole numbers are colours and labels, which PyVista takes for vectors if there are three.
     for data, other in (
         (mesh.point_data, moved.point_data), (mesh.cell_data, moved.cell_data)
@@ -237,4 +238,7 @@ def _moved(mesh: Mesh, matrix: Array) -> Mesh:
         for name in data:
             if data[name].dtype.kind != "f":
                 other.set_array(data[name], name)
+            elif data[name].shape[1:] == (3,) and name != data.active_normals_name:
+                # A smaller picture of a flow is as fast.
+                other.set_array(other[name] / scale, name)
     return moved

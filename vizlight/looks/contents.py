@@ -82,6 +82,11 @@ _KIND_WORDS = {
 }  # fmt: skip
 #: Words in the names of colours.
 _COLOR_WORDS = {"rgb", "color", "colors", "colour", "colours"}
+#: Names of velocities, in lower case; those of Fluent begin with "SV_".
+VELOCITY = re.compile(
+    r"(sv_)?(u|v)|vel|(sv_)?u,(sv_)?v(,(sv_)?w)?|uvw?|vectors?"
+    "|.*(veloc|vitesse|wi?nd|flow|current).*"
+)
 #: Words in the names of vectors that are no flow: what moves or loads a solid.
 _LOAD_WORDS = {
     "deformation", "depl", "disp", "displ", "displacement", "displacements", "force", "forces",
@@ -409,7 +414,9 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
         is_noise = noise.keys() >= {*array.name.split(",")}
         of_few = _is_of_few(mesh, array)
         is_part = array.name in parts
-        return (is_noise, kinds, of_few, static, is_inactive, is_part, array.of_cells != kinds)
+        is_slow = array.role == "vectors" and VELOCITY.fullmatch(array.name.lower()) is None
+        of_last = is_part, is_slow, array.of_cells != kinds
+        return (is_noise, kinds, of_few, static, is_inactive, *of_last)
 
     return tuple(sorted([*described, *joined], key=rank))
 

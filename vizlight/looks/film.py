@@ -167,10 +167,7 @@ def _looks(
 
 @dataclass(frozen=True)
 class _Flow:
-    """Strokes of a look at one step, that can be carried.
-
-    The mesh is the flat sheet or volume of the vectors.
-    """
+    """Strokes of a look at one step that can be carried, on a sheet or in a volume."""
 
     look: vizlight.Look
     layer: Layer
@@ -364,10 +361,7 @@ def _colors(look: vizlight.Look, read: Step, times: Sequence[float], array: str)
 
 
 def _in_bands(values: Array, unit: float) -> Keywords:
-    """Return the range of the bands between isolines that hold the values of all steps.
-
-    Values are in the unit in which they are read, ``unit`` is that in the one of the array.
-    """
+    """Return the range of the bands between isolines that hold values, read in a unit."""
     ends = float(values.min()), float(values.max())
     edges = classes(even_levels(*ends, map_parts.LEVELS[0]), ends)
     return {"clim": (float(f"{unit * edges[0]:.12g}"), float(f"{unit * edges[-1]:.12g}"))}

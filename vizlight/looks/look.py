@@ -376,10 +376,7 @@ class Look:
 
 
 def _of_page(layer: Layer, away: float) -> Layer:
-    """Return a layer as a page has it.
-
-    ``away`` is the distance of the page's eye in that of the picture's.
-    """
+    """Return a layer as a page has it, whose eye is ``away`` times as far."""
     keywords = dict(layer.keywords)
     if "point_size" in keywords:
         keywords["point_size"] = round(keywords["point_size"] / away, 1)
@@ -434,10 +431,10 @@ def look(
         numbers), ``contour``, ``level`` (of an isosurface), ``warp``, ``exaggeration``, ``globe``
         (a map of the whole earth on a ball, a raised one with ``warp`` or ``exaggeration``). The
         light: ``scene``, and options of :func:`vizlight.illuminate` or of the filter of the
-        question, such as ``tangents``. The picture: ``background``, ``line_width``, ``cmap``,
-        ``clim``, ``key``, ``title`` (words above it), ``map_parts`` (those that are drawn of
-        "coasts", "frame" and "isolines"; () for none), ``up``, ``parallel``, ``zoom``, ``backend``.
-        A movie: ``frames``, ``fps``.
+        question, such as ``tangents``. The picture: ``background``, ``line_width``, ``scalars``
+        (an array that only colours the drawing), ``cmap``, ``clim``, ``key``, ``title`` (words
+        above it), ``map_parts`` (those that are drawn of "coasts", "frame" and "isolines"; () for
+        none), ``up``, ``parallel``, ``zoom``, ``backend``. A movie: ``frames``, ``fps``.
 
     Returns
     -------
@@ -523,10 +520,7 @@ def decide(data: object, wishes: Wishes) -> Look:
 
 
 def _decided(rule: Rule, case: Case, notes: Sequence[str], unread: int = 0) -> Look:
-    """Return the look of one mesh: the first that a reader can read.
-
-    ``unread`` drawings are unreadable already.
-    """
+    """Return the look of one mesh: the first that a reader can read, after unread ones."""
     drawing = rule.recipe(case)
     for _ in range(unread):
         assert drawing.doubt is not None
@@ -837,7 +831,15 @@ def _asked_array(contents: Contents, wishes: Wishes) -> Named | None:
     if option == "tangents" and named.role != "vectors":
         got = f"{name!r} with {named.role}"
         raise value_error(option, "vectors, or names U,V of their components", got)
-    return named
+    # Colours of what is drawn along vectors.
+    only_colors = (
+        option == "scalars"
+        and named.role in ("values", "heights")
+        and wishes.question in ("auto", "direction", "heading", "flow")
+        and contents.flow is not None
+        and (contents.dimension == 3 or contents.flat_axis is not None)
+    )
+    return None if only_colors else named
 
 
 def _others(contents: Contents, case: Case, drawn: str) -> tuple[Other, ...]:

@@ -119,8 +119,9 @@ def joined(drawings: Sequence[Drawing]) -> Drawing:
         for key in drawing.keys:
             scene = key.get("scene")
             question = key.get("question") or (scene and preset_of(scene.run()))
-            identity = (question, key.get("title") if question == "value" else "", key.get("clim"))
-            keys.setdefault(repr(identity), key)
+            # Words behind a semicolon are on how the values are drawn.
+            title = str(key.get("title")).partition(";")[0] if question == "value" else ""
+            keys.setdefault(repr((question, title, key.get("clim"))), key)
     every = [layer for drawing in drawings for layer in drawing.layers]
     # Words around views are those of all meshes.
     words_around = [layer for layer in every if layer.mesh.path == "render.captions"]

@@ -25,7 +25,7 @@ WAYS: dict[tuple[str, ...], str] = {
         "group='...'))",
     (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",
     (".step", ".stp", ".iges", ".igs", ".brep"):
-        "gmsh makes a mesh of it: gmsh -2 -clcurv 20 '{name}' -o '{stem}.stl'",
+        "gmsh of pip makes a mesh of it: gmsh -2 -bin -clcurv 48 '{name}' -o '{stem}.stl'",
     (".dcd", ".trr", ".xtc", ".psf", ".prmtop", ".tpr", ".pdbqt", ".mmtf", ".bcif"):
         "write a state of the molecule as .pdb, .cif or .xyz, for example by MDAnalysis or VMD",
     (".geojson", ".topojson", ".gpkg", ".shp", ".kml"):

@@ -404,11 +404,7 @@ def outer_faces(mesh: Dataset) -> tuple[vtkPolyData, Indices, Indices]:
 def _part(
     grid: vtkUnstructuredGrid, every: Sequence[DrawnCells], types: AnyArray, block: Slice
 ) -> tuple[vtkUnstructuredGrid, Indices]:
-    """Return some cells of a grid as one without arrays, and the points that these have, rising.
-
-    ``every`` has the cells of the grid, and of polyhedra the faces of each, and the corners of
-    these.
-    """
+    """Return the cells of a block without arrays, and their points, rising."""
     ids, ends = every[0].of_block(block)
     # Neighbouring cells mostly have neighbouring points.
     low, high = int(ids.min()), int(ids.max()) + 1

@@ -246,11 +246,20 @@ def _fitting(drawn: _Drawn, suffix: str, attempt: _Attempt, *, plates: bool) -> 
     lines, _ = strokes_of(drawn.courses, COARSEST)
     # Pixels in place of faces help nothing where it is the strokes that are many.
     few = len(drawn.written(suffix, [], lines, "")) <= LARGEST
-    for along, quality in PIXELS if few else ():
-        pixels = drawn.pixels(suffix, along, quality, lines)
-        if len(pixels.data) <= LARGEST:
-            return pixels
-    return attempt if attempt.asked == COARSEST else drawn.attempt(suffix, COARSEST, plates=plates)
+    # A PDF file has no JPEG, and a large picture no more pixels than its own.
+    ways = dict.fromkeys(
+        (min(along, drawn.scale), quality if suffix == ".svg" else None)
+        for along, quality in PIXELS
+    )
+    others = list[_Attempt]()
+    for along, quality in ways if few else ():
+        others.append(drawn.pixels(suffix, along, quality, lines))
+        if len(others[-1].data) <= LARGEST:
+            return others[-1]
+    if attempt.asked < COARSEST:
+        attempt = drawn.attempt(suffix, COARSEST, plates=plates)
+    # Colours of pixels are exact, which is worth twice the size.
+    return min(attempt, *others, key=lambda each: len(each.data) * (1 + math.isfinite(each.error)))
 
 
 def _note(path: Path, best: _Attempt, *, error: float | None) -> None:
@@ -263,10 +272,10 @@ def _note(path: Path, best: _Attempt, *, error: float | None) -> None:
             "plotter makes paths"
         )
     elif len(best.data) > LARGEST:
-        remedy = "a larger save_graphic(error=) makes it smaller, and so do fewer details"
         _check.warn(
             f"'{path.name}' has {size} at an error of {best.error:.1f} of 255, more than "
-            f"{LARGEST // 1000} kB: {remedy}"
+            f"{LARGEST // 1000} kB: fewer lines or details make it smaller, and so does a larger "
+            "save_graphic(error=) of a plotter"
         )
     elif error is None and best.error > UNSAID:
         _check.warn(

@@ -21,7 +21,7 @@ from vizlight.draw.margins import ink_on, parted
 from vizlight.draw.render import KEY_SIZE
 from vizlight.draw.ticks import numerals_of
 from vizlight.looks import levels, map_parts
-from vizlight.looks.contents import Contents, kinds_of
+from vizlight.looks.contents import VELOCITY, Contents, kinds_of
 from vizlight.looks.exposure import exposure_seen
 from vizlight.looks.framing import ISOMETRIC, MODELS, Viewpoint, eye_around, eye_of
 from vizlight.looks.ranges import (
@@ -99,8 +99,6 @@ ALONG = 0.99
 
 #: Methods of CF over the time of a step.
 OVER_TIME = re.compile(r"\btime: (mean|maximum|minimum|median|sum|variance)\b(?! within)")
-#: Names of velocities, in lower case.
-VELOCITY = re.compile(r"u|v|vel|u,v(,w)?|uvw?|vectors?|.*(veloc|vitesse|wi?nd|flow|current).*")
 #: Names of displacements, in lower case, which are alike over a part of a solid at most.
 DISPLACEMENT = re.compile(
     r"(.*[^a-z])?[xyz]?(d(e?pl|i?spl?|isplacements?)|deformation)[xyz]?(,.*)?"
@@ -620,6 +618,12 @@ class Case:
         return next((step for step in steps if step.path == "files.warped"), None)
 
     @property
+    def second(self) -> Named | None:
+        """Array that only colours what is drawn of the other one, None for the usual colours."""
+        array = self.contents.named(str(self.wishes.picture.get("scalars") or ""))
+        return None if array == self.array else array
+
+    @property
     def needed_array(self) -> Named:
         """Array that is shown, of a recipe that cannot do without."""
         if self.array is None:
@@ -816,7 +820,7 @@ def titled_length(mesh: pv.DataSet, name: str) -> str:
     of_what = re.match(r"(?i)(\w+)[ -]velocity\b", title)
     if is_speed and of_what and "," not in title.partition(" at ")[0]:
         return f"{of_what[1]} speed{title[of_what.end() :]}"
-    words = re.sub(r"(?i)^of (velocity|vectors?)(?= \(|$)", "", f"of {title}").strip()
+    words = re.sub(r"(?i)^of (velocity|vectors?|sv)(?= \(|$)", "", f"of {title}").strip()
     return f"speed {words}".strip() if is_speed else f"length of {title}"
 
 

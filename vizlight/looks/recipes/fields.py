@@ -150,8 +150,7 @@ def _lit(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawing:
     light = {"tangents": array.name} | case.wishes.light_of_surface()
     scene = case.exposed(mesh, camera, **light)
     lit = case.lit(mesh, scene, **light)
-    other = case.contents.named(str(case.wishes.picture.get("scalars") or ""))
-    if other is not None and other.name != array.name:
+    if (other := case.second) is not None:
         # Colours of data take the place of the hues of the light.
         scene = case.exposed(mesh, camera, "value", **light)
         lit = case.lit(mesh, scene, **light)
@@ -187,14 +186,20 @@ def _speed(case: Case, mesh: Step, camera: Step, strokes: Step | None) -> Drawin
     scene = case.wishes.scene("none", camera)
     if bent:
         scene = case.exposed(mesh, camera, "value", **light)
-    colors, note = colors_of_lengths(case, mesh, SPEED)
-    shown = {"scene": scene, "scalars": array.name, "show_scalar_bar": False, **colors}
+    sense = SENSE if case.wishes.part.get("slice") is None else SENSE_IN_CUT
+    sense *= strokes is not None
+    if (shown_array := case.second) is not None:
+        colors, note, bar = _colors_of(case, mesh, shown_array, SPEED, sense)
+    else:
+        shown_array, (colors, note) = array, colors_of_lengths(case, mesh, SPEED)
+        bar = bar_of_lengths(mesh, array.name, colors, sense)
+    shown = {"scene": scene, "scalars": shown_array.name, "show_scalar_bar": False, **colors}
     layers = [Layer(mesh, shown | case.wishes.drawn(light)), *case.edges(camera)]
     if strokes is not None:
         layers.append(_inked(case, strokes, camera))
-    sense = SENSE if case.wishes.part.get("slice") is None else SENSE_IN_CUT
-    bar = bar_of_lengths(mesh, array.name, colors, "" if strokes is None else sense)
-    words = f"length of {array.name} in colours" + ", with strokes along it" * (strokes is not None)
+    words = f"length of {array.name}" if shown_array is array else shown_array.name
+    along = "it" if shown_array is array else array.name
+    words += " in colours" + f", with strokes along {along}" * (strokes is not None)
     lit = case.lit(mesh, scene, **light)
     notes = [note] if note else []
     return Drawing(layers, camera, scene, lit, words, [bar], notes=notes, kind=mesh)
@@ -269,7 +274,8 @@ def pixel_of(case: Case, camera: Step) -> float:
 def turn_of(mesh: pv.DataSet, name: str) -> float:
     """Return how much vectors turn along the edges of a cell, in radians per length: the median.
 
-    The median is that of a field that is smooth in most places, whatever it does elsewhere.
+    Half of the area turns less, so that it is that of a field which is smooth in most places,
+    however many small cells are elsewhere.
     """
     mesh = records.averaged(mesh, name)
     first, starts, counts = sampled_corners(mesh)
@@ -287,8 +293,11 @@ def turn_of(mesh: pv.DataSet, name: str) -> float:
     turns[good] = np.arccos(np.clip(cosines, -1, 1))
     around = np.add.reduceat(lengths, starts)
     has_length = around > 0
-    each = np.add.reduceat(turns, starts)[has_length] / around[has_length]
-    return float(np.median(each)) if len(each) else 0.0
+    around, turned = around[has_length], np.add.reduceat(turns, starts)[has_length]
+    each, areas = turned / around, around**2
+    ranked = np.argsort(each)
+    half = np.searchsorted(np.cumsum(areas[ranked]), areas.sum() / 2)
+    return float(each[ranked[half]]) if len(each) else 0.0
 
 
 def flow(case: Case) -> Drawing:
@@ -351,21 +360,32 @@ def flow(case: Case) -> Drawing:
     return Drawing(layers, camera, scene, lit, words, keys, notes=notes)
 
 
+def _colors_of(
+    case: Case, mesh: Step, array: Named, cmap: str, sense: str
+) -> tuple[Keywords, str, Keywords]:
+    """Return the colours of values beside a flow, words on their range, and the key."""
+    colors, note = case.ranged_of(mesh, array, cmap)
+    key = case.bar(array, colors)
+    is_warm = meaning.is_temperature(case.data.run(), array.name) and key["title"] == array.name
+    title = "temperature" if is_warm else key["title"]
+    return colors, note, key | {"title": f"{title}{sense}"}
+
+
 def _colors_of_flow(case: Case, mesh: Step, lines: Step) -> tuple[Keywords, str, list[Keywords]]:
     """Return the colours of streamlines, words on their range, and the key.
 
-    They are those of the temperature if the file has one, which drives the flow or is carried by
-    it, and nobody asks for the vectors alone; else of the speed.
+    They are those of the array that is to colour them, else of the temperature if the file has one,
+    which drives the flow or is carried by it, and nobody asks for the vectors alone; else of the
+    speed.
     """
     array = case.needed_array
     arrays = [array for array in case.contents.arrays if array.role == "values"]
     source = case.data.run()
     warm = next((array for array in arrays if meaning.is_temperature(source, array.name)), None)
-    if warm is not None and case.wishes.array is None and warm.name in lines.run().point_data:
-        colors, note = case.ranged_of(lines, warm, case.map_on_ground)
-        key = case.bar(warm, colors)
-        title = "temperature" if key["title"] == warm.name else key["title"]
-        return {"scalars": warm.name, **colors}, note, [key | {"title": f"{title}{SENSE}"}]
+    shown = case.second or (warm if case.wishes.array is None else None)
+    if shown is not None and shown.name in lines.run().point_data:
+        colors, note, key = _colors_of(case, lines, shown, case.map_on_ground, SENSE)
+        return {"scalars": shown.name, **colors}, note, [key]
     speed = own_name(mesh.run(), "speed")
     speeds = np.asarray(lines.run()[speed], dtype=np.float64)
     colors, note = case.ranged(speeds, "speed", case.map_on_ground, lengths=True)

@@ -120,7 +120,7 @@ def isosurface(case: Case) -> Drawing:
     if is_one and _is_crumbs(mesh.run(), DUST if level.is_sure else LARGE):
         return _cut_open(valued) or slices(valued, "; isosurfaces are crumbs")
     # One that is asked for besides is shown on it.
-    second = case.contents.named(str(case.wishes.picture.get("scalars") or ""))
+    second = case.second
     is_free = not level.is_sure and not has_molecule and not isinstance(level.at, tuple)
     if second is None and is_free and not _is_of_scanner(case, array):
         opened = _opened(valued, level)
