@@ -511,7 +511,7 @@ def _apart_on_surface(mesh: pv.DataSet) -> float:
 
 def _by_direction(lit: Step) -> Step:
     """Return the step that colours lines by the size of the components of their direction."""
-    # Light is mixed, of which colours are the root: with pure red, green and blue they are the sizes.
+    # Light is mixed, whose root colours are: those of pure red, green and blue are the sizes.
     axes = [[part**2 for part in pv.Color(color).int_rgb] for color in OF_AXES.values()]
     shares = Step("", "numpy.square", Step("", "vizlight.direction_colors", lit))
     rgb = Step("", "numpy.sqrt", Step("", "numpy.matmul", shares, axes))
