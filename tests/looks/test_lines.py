@@ -131,13 +131,27 @@ def test_some_of_the_lines_are_drawn_as_all_are():
     assert part.keywords["line_width"] >= whole["line_width"]
 
 
-def test_colours_of_direction_are_those_of_the_key():
+def test_light_of_the_colours_of_the_key_is_mixed_by_direction():
     mesh = tangle(20)
     look = vizlight.look(mesh)
     shown = look.drawing.layers[0].mesh.run()
     lines = np.diff(mesh.points.reshape(-1, 2, 3), axis=1)[:, 0]
-    shares = np.abs(lines) / np.linalg.norm(lines, axis=1, keepdims=True)
-    np.testing.assert_allclose(shown["rgb"][::2] / 255, shares, atol=0.02)
+    shares = lines**2 / np.sum(lines**2, axis=1, keepdims=True)
+    keys = look._keys[0]["cmap"].run().values[:, :3].astype(float)
+    assert np.ptp(keys, axis=1).max() < 200
+    np.testing.assert_allclose(shown["rgb"][::2], np.sqrt(shares @ keys**2), atol=1.01)
+
+
+def test_lines_of_a_mat_are_round_and_others_have_outlines():
+    row = np.linspace(0.0, 1.0, 30)
+    ends = np.array([((0, y, z), (3, y, z)) for y in row for z in row]).reshape(-1, 3)
+    mat = pv.PolyData(ends, lines=np.insert(np.arange(1800).reshape(-1, 2), 0, 2, axis=1))
+    shown = vizlight.look(mat).drawing.layers[0].keywords
+    assert shown["render_lines_as_tubes"]
+    assert shown["halo"] is False
+    crossing = vizlight.look(tangle(300)).drawing.layers[0].keywords
+    assert crossing["halo"] == "black"
+    assert "render_lines_as_tubes" not in crossing
 
 
 def test_no_words_are_above_a_picture_without_a_title():

@@ -285,6 +285,29 @@ def test_a_level_of_both_signs_is_shown_where_0_is_the_ground():
         assert "±" not in vizlight.look(grid).summary
 
 
+def test_signed_maps_of_a_masked_body_are_in_its_glass():
+    grid = pv.ImageData(dimensions=(40,) * 3, origin=(-19.5,) * 3)
+    x, y, z = grid.points.T
+    below, above = (np.exp(-((x - side) ** 2 + y**2 + z**2) / 12) for side in (-6, 6))
+    inside = np.sqrt(x * x + y * y + z * z) < 16
+    grid["t"] = np.where(inside, 7 * above - 5 * below + 1e-3, 0.0)
+    look = vizlight.look(grid)
+    blobs, glass = (layer.mesh.run() for layer in look.drawing.layers[:2])
+    radii = np.linalg.norm(glass.points, axis=1)
+    assert radii.min() > 16 > np.linalg.norm(blobs.points, axis=1).max()
+    assert np.ptp(radii) < 2
+    assert look.drawing.layers[1].keywords["opacity"] < 0.5
+    title = look.drawing.keys[0]["title"]
+    assert title.endswith("peaks {:.3g} and {:.3g}".format(grid["t"].min(), grid["t"].max()))
+    # Along an axis across which no lobe hides the other one.
+    way = np.abs(look.view.direction)
+    assert way[0] == 0
+    assert np.sort(way).tolist() == [0, 0, 1]
+    # Elsewhere the data do not say where a body is.
+    grid["t"] = 7 * above - 5 * below + 1e-3
+    assert "peaks" not in vizlight.look(grid).drawing.keys[0]["title"]
+
+
 def test_a_map_of_densities_has_a_level_of_2_deviations_where_nothing_is_steeper(monkeypatch):
     monkeypatch.setattr(volumes.levels, "GOOD", 1e9)
     grid = volume(count=40)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -394,7 +394,7 @@ def _values(
     return None
 
 
-def eye_around(surface: pv.PolyData, *, cut: bool = False) -> Viewpoint:
+def eye_around(surface: pv.PolyData, *, cut: bool = False, in_body: bool = False) -> Viewpoint:
     """Return the eye that sees most of a surface from the side, open or not.
 
     Parameters
@@ -403,13 +403,16 @@ def eye_around(surface: pv.PolyData, *, cut: bool = False) -> Viewpoint:
         Surface of a volume, such as an isosurface.
     cut : bool, default: False
         Whether its box cuts it.
+    in_body : bool, default: False
+        Whether it is in a body, at whose right, before or above which the eye is then.
     """
     _, corners, _ = _triangles(surface)
     if not len(corners):
         return _of_points(_finite(surface.points))
     corners, normals = _with_normals(corners)
-    ways = _ways(DIAGONALS, ABOVE_BOX) if cut else _ways()
-    return _around(corners, normals, _creases(surface), ways)
+    ways = _ways(DIAGONALS, ABOVE_BOX) if cut else [*np.eye(3)] if in_body else _ways()
+    eye = _around(corners, normals, _creases(surface), ways)
+    return replace(eye, up=_vector(_plane(np.array(eye.toward))[1])) if in_body else eye
 
 
 def eye_across(mesh: pv.PolyData) -> Viewpoint:

@@ -40,6 +40,10 @@ if TYPE_CHECKING:
 #: Name that stands for the direction of lines among the arrays that colour a picture.
 DIRECTION = "direction"
 
+#: Colours of lines along x, y and z, of which those of others are mixed: red, green and blue as in
+#: tractography, but muted, so that light on them tells their form.
+OF_AXES = {0: "#e8503e", 1: "#3fb257", 2: "#4a72ee"}
+
 #: Least width of lines in widths of the thinnest, their largest in pixels, and the share of a
 #: picture that they may fill.
 THINNEST, WIDEST, COVERED = 1.7, 6.0, 0.08
@@ -48,6 +52,8 @@ BAND = 1.5
 #: Side of the squares in which lines are crowded, in widths of the thinnest, and the share of them
 #: that they may fill.
 SQUARE, CROWDED = 8.0, 0.5
+#: Length of lines in such a square, in its sides, from which they are a mat without crossings.
+MATTED = 48.0
 #: Least and largest size of points in pixels, and the share of a picture that they may fill.
 POINT_SIZES, FILLED = (3.0, 20.0), 0.15
 #: Size of the points of a map in distances of neighbours, and most points whose neighbours are
@@ -112,12 +118,15 @@ def lines(case: Case) -> Drawing:
         longest = _longest(mesh) if is_dense else None
         if longest is not None:
             camera = case.camera(longest)
-            pen = _pen(replace(case, data=longest), camera)
             mesh = longest
-        shown = {"scene": even_light(camera), "scalars": RGB, "rgb": True}
-        # The colours are those of the key, which light would change.
-        layer = Layer(_by_direction(case.lit(mesh, even_light(camera))), shown | pen)
-        table = Step("", "vizlight.maps.directions", meaning.ways(mesh.run()))
+        if is_dense:
+            pen = _pen(replace(case, data=mesh), camera, can_be_round=True)
+        is_round = pen.get("render_lines_as_tubes", False)
+        shown = {"scene": case.wishes.scene("lamp", camera) if is_round else even_light(camera)}
+        shown |= {"scalars": RGB, "rgb": True} | pen
+        layer = Layer(_by_direction(case.lit(mesh, even_light(camera))), shown)
+        words_of_axes = dict(enumerate(meaning.ways(mesh.run())))
+        table = Step("", "vizlight.maps.kinds", words_of_axes, colors=OF_AXES)
         key: Keywords = {"question": "value", "cmap": table}
         key["title"] = named(file_named(case.data), "direction")
         if longest is not None:
@@ -332,11 +341,11 @@ def _on_ligands(atoms: pv.DataSet, ligands: pv.DataSet) -> list[str]:
     return notes
 
 
-def _pen(case: Case, camera: Step) -> Keywords:
+def _pen(case: Case, camera: Step, *, can_be_round: bool = False) -> Keywords:
     """Return the width of lines by their spacing, and a dark outline of dense ones.
 
     Few are wider than many, and so are those that lie apart. Halos of the colour of the ground
-    would cut dense ones to pieces.
+    would cut dense ones to pieces, and of a mat outlines would be most: its lines are round.
     """
     mesh: pv.PolyData = case.data.run()
     if case.wishes.picture.get("line_width") or not isinstance(mesh, pv.PolyData):
@@ -358,6 +367,8 @@ def _pen(case: Case, camera: Step) -> Keywords:
         width = np.clip(widest, case.width / 2, WIDEST)
         return {"line_width": round(float(width), 1), "halo": False}
     pen: Keywords = {"line_width": round(float(np.clip(widest, thinnest, WIDEST)), 1)}
+    if crowd > MATTED and can_be_round:
+        return pen | {"halo": False, "render_lines_as_tubes": True}
     if widest < thinnest:
         return pen | {"halo": "black"}
     # The halo of a wide line is as wide as that of a thin one.
@@ -500,6 +511,9 @@ def _apart_on_surface(mesh: pv.DataSet) -> float:
 
 def _by_direction(lit: Step) -> Step:
     """Return the step that colours lines by the size of the components of their direction."""
-    rgb = Step("", "numpy.multiply", Step("", "vizlight.direction_colors", lit), 255)
+    # Light is mixed, whose root colours are: those of pure red, green and blue are the sizes.
+    axes = [[part**2 for part in pv.Color(color).int_rgb] for color in OF_AXES.values()]
+    shares = Step("", "numpy.square", Step("", "vizlight.direction_colors", lit))
+    rgb = Step("", "numpy.sqrt", Step("", "numpy.matmul", shares, axes))
     # The type, bytes, sets colours apart from vectors.
     return Step("shown", "vizlight.tint", lit, Step("", "numpy.uint8", rgb))

@@ -69,6 +69,11 @@ MOST_OF_CUT, LEAST_OF_CUT = (10, 90), 0.1
 #: point out of it.
 CLEAR = {"opacity": 0.5, "culling": "back"}
 OUTWARD = {"auto_orient_normals": True, "split_vertices": False, "cell_normals": False}
+#: Shares of the voxels of a masked scan that are 0, least share of the outline of all others that
+#: is that of the body, deviation of the filter that smooths it, in voxels, its level, so that it is
+#: around what is in it, voxels around the scan, and its drawing.
+OUTSIDE, MOST_OF_BODY, OUTLINE, EDGE, MARGIN = (0.2, 0.9), 0.7, 2.0, 0.25, 4
+GLASS = {"color": "#9aa1ad", "opacity": 0.2, "culling": "back", "pickable": False}
 #: Most pieces of an isosurface, where none has this share of it; share of one that is sure.
 MOST_PIECES, LARGE, DUST = 50, 0.3, 0.01
 #: Radians in a pixel from which the normals of an isosurface may turn too fast, and how they are
@@ -129,36 +134,36 @@ def isosurface(case: Case) -> Drawing:
     if not level.is_sure and _is_scan(case, array):
         mesh = _without_debris(mesh, level.notes)
     surface, box = _framed(whole, mesh, boxed=level.boxed)
-    if has_molecule and box is None and case.wishes.frame is None:
-        # Atoms may stand out of the isosurface.
-        ball = Step("", "pyvista.Sphere", radius=1)
-        atoms = Step("atoms", "files.atoms_in", case.data)
-        balls = Step(
-            "", ".glyph", atoms, orient=False, scale="radius", factor=lines.BALL, geom=ball
-        )
-        both = Step("", "pyvista.MultiBlock", [mesh, balls])
-        frame = case.wishes.camera(both, eye_around(mesh.run()))
+    body = _body_around(case, array)
+    if box is None and case.wishes.frame is None and (body is not None or has_molecule):
+        frame = _camera_around(case, mesh, body)
         surface = replace(surface, wishes=replace(surface.wishes, frame=frame))
-    figure = "value"
     if isinstance(level.at, tuple):
-        words = f"±{levels.number(level.at[1])}"
-        drawing = _of_both_signs(surface, array, level.at, words)
+        peaks = None if body is None else range_of(case.data.run(), array.name)
+        drawing = _of_both_signs(surface, array, level.at, peaks)
     elif second is not None:
-        words = f"{levels.number(level.at)} in the colours of {second.name}"
         drawing = surfaces.values(replace(surface, question="value", array=second))
     else:
-        figure, words = "shape", levels.number(level.at)
         drawing = surfaces.surface(replace(surface, question="shape"))
     if has_molecule:
         drawing = _around_molecule(case, drawing)
     if not level.is_sure and _is_rough(surface, mesh, drawing.camera):
+        figure = "value" if second is not None else "shape"
         drawing = replace(drawing, doubt=Doubt((figure,), lambda: slices(valued)))
+    words = f"{array.name} = {_written(level.at)}"
+    words += "" if second is None else f" in the colours of {second.name}"
+    around = [] if box is None else whole.boxed(box, drawing.camera)
+    around += [] if body is None else [Layer(body, {"scene": drawing.scene, **GLASS})]
     return replace(
         drawing,
-        words=f"isosurface {array.name} = {words}",
+        words=f"isosurface {words}",
         notes=[*drawing.notes, *level.notes],
-        layers=[*drawing.layers, *([] if box is None else whole.boxed(box, drawing.camera))],
+        layers=[*drawing.layers, *around],
     )
+
+
+def _written(level: float | tuple[float, float]) -> str:
+    return f"±{levels.number(level[1])}" if isinstance(level, tuple) else levels.number(level)
 
 
 def _level(case: Case, array: Named) -> _Level | str:
@@ -204,6 +209,32 @@ def _level(case: Case, array: Named) -> _Level | str:
     return _Level(level, volume, notes, boxed=not is_scan, is_sure=not is_auto)
 
 
+def _body_around(case: Case, array: Named) -> Step | None:
+    """Return the step that makes the body in a masked map of both signs, None without one.
+
+    It is around the largest piece of what is not 0, which is most of that.
+    """
+    rows = np.asarray(case.data.run()[array.name])
+    is_signed = bool(rows.min() < 0 < rows.max())
+    if not is_signed or case.wishes.question != "auto" or not _is_scan(case, array):
+        return None
+    if not OUTSIDE[0] < np.mean(rows == 0) < OUTSIDE[1]:
+        return None
+    scan = Step("scan", ".copy", case.data, deep=False)
+    scan.attributes = {"active_scalars_name": array.name}
+    mask = Step(
+        "mask", ".image_threshold", scan, [0.0, 0.0], in_value=0.0, out_value=1.0,
+        scalars=array.name,
+    )  # fmt: skip
+    mask = Step("mask", ".pad_image", mask, pad_value=0.0, pad_size=MARGIN, scalars=array.name)
+    smooth = Step("", ".gaussian_smooth", mask, std_dev=OUTLINE, scalars=array.name)
+    every = Step("outlines", ".contour", smooth, [EDGE], scalars=array.name)
+    sizes = np.bincount(piece_numbers(every.run())) if every.run().n_cells else np.zeros(1)
+    if sizes.max() <= MOST_OF_BODY * sizes.sum():
+        return None
+    return Step("body", ".connectivity", every, "largest")
+
+
 def _are_low_inside(case: Case, array: Named, level: float | tuple[float, float]) -> bool:
     """Return whether an isosurface encloses the lesser part of a scan, of low values.
 
@@ -236,7 +267,9 @@ def _size_of_both_signs(values: Array, volume: Step, array: Named) -> float | No
     return None if contrast < levels.GOOD or lesser < LESSER_SIDE * larger else level
 
 
-def _of_both_signs(surface: Case, array: Named, ends: tuple[float, float], words: str) -> Drawing:
+def _of_both_signs(
+    surface: Case, array: Named, ends: tuple[float, float], peaks: tuple[float, float] | None
+) -> Drawing:
     """Return the drawing of the isosurfaces at a level of both signs, each in its colour."""
     cmap: Foreign = surface.wishes.colors.get("cmap", LOBES)
     # No range but theirs tells the two levels apart.
@@ -247,6 +280,8 @@ def _of_both_signs(surface: Case, array: Named, ends: tuple[float, float], words
     named = {place: levels.number(end) for place, end in enumerate(ends)}
     table = color_table([], cmap=cmap, clim=ends)
     colors = {place: to_hex(table.map_value(end)) for place, end in enumerate(ends)}
+    words = _written(ends)
+    words += "" if peaks is None else ", peaks {:.3g} and {:.3g}".format(*peaks)
     key = drawing.keys[0] | {
         "title": f"{title}, isosurfaces at {words} {unit}".rstrip(),
         # Nothing is drawn between the levels, as a bar would say.
@@ -279,6 +314,18 @@ def _framed(case: Case, mesh: Step, *, boxed: bool) -> tuple[Case, Step | None]:
         )
     case = replace(case, data=mesh, contents=contents, wishes=wishes)
     return case, box if boxed and around else None
+
+
+def _camera_around(case: Case, mesh: Step, body: Step | None) -> Step:
+    """Return the step of the camera on an isosurface, and on the body or the atoms around it."""
+    if body is not None:
+        return case.wishes.camera(body, eye_around(mesh.run(), in_body=True))
+    # Atoms may stand out of the isosurface.
+    ball = Step("", "pyvista.Sphere", radius=1)
+    atoms = Step("atoms", "files.atoms_in", case.data)
+    balls = Step("", ".glyph", atoms, orient=False, scale="radius", factor=lines.BALL, geom=ball)
+    both = Step("", "pyvista.MultiBlock", [mesh, balls])
+    return case.wishes.camera(both, eye_around(mesh.run()))
 
 
 def _closed(image: Step, name: str, level: float) -> Step:
