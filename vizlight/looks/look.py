@@ -376,7 +376,7 @@ class Look:
 
 
 def _of_page(layer: Layer, away: float) -> Layer:
-    """Return a layer as a page has it, whose eye is ``away`` times as far."""
+    """Return a layer as a page has it, of which the eye is ``away`` times as far."""
     keywords = dict(layer.keywords)
     if "point_size" in keywords:
         keywords["point_size"] = round(keywords["point_size"] / away, 1)
