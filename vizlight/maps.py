@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from vizlight._types import Foreign
 
-__all__ = ["bands", "directions", "even", "heights", "kinds", "speed"]
+__all__ = ["bands", "even", "heights", "kinds", "speed"]
 
 #: Muted colours of kinds that a reader tells apart, also without green cones: of much the same
 #: chroma, as far as can be from each other, from the grey of missing values and from paper.
@@ -315,42 +315,4 @@ def kinds(
     table.nan_color = table.below_range_color = table.above_range_color = MISSING
     table.scalar_range = (float(rows[0]) - 0.5, float(rows[-1]) + 0.5)
     table.annotations = {float(value): names.get(value, f"{value:g}") for value in rows}
-    return table
-
-
-def directions(names: Sequence[str] = ("x", "y", "z")) -> pv.LookupTable:
-    """Return a lookup table with the colours of the axes, of which those of directions are mixed.
-
-    They are those of :func:`vizlight.direction_colors`: red along x, green along y, blue along z.
-
-    Parameters
-    ----------
-    names : sequence of str, default: ("x", "y", "z")
-        Words for the three axes, such as ``"left, right"``.
-
-    Returns
-    -------
-    pyvista.LookupTable
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the names are not three texts.
-
-    Examples
-    --------
-    >>> from vizlight import maps
-    >>> maps.directions().annotations
-    {0.0: 'x', 1.0: 'y', 2.0: 'z'}
-    """
-    if not isinstance(names, list | tuple) or len(names) != 3:
-        kind = ValueError if isinstance(names, list | tuple) else TypeError
-        raise kind(_check.message("names", "a sequence of three words", _check.describe(names)))
-    words = [_check.text(f"names[{i}]", name) for i, name in enumerate(names)]
-    table = kinds([0, 1, 2])
-    colors = np.zeros((3, 4), dtype=np.uint8)
-    colors[:, :3] = 255 * np.eye(3, dtype=np.uint8)
-    colors[:, 3] = 255
-    table.values = colors
-    table.annotations = {float(axis): name for axis, name in enumerate(words)}
     return table

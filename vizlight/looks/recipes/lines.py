@@ -122,8 +122,8 @@ def lines(case: Case) -> Drawing:
         if is_dense:
             pen = _pen(replace(case, data=mesh), camera, can_be_round=True)
         is_round = pen.get("render_lines_as_tubes", False)
-        shown = {"scene": case.wishes.scene("lamp", camera) if is_round else even_light(camera)}
-        shown |= {"scalars": RGB, "rgb": True} | pen
+        lamp = case.wishes.scene("lamp", camera) if is_round else even_light(camera)
+        shown = {"scene": lamp, "scalars": RGB, "rgb": True} | pen
         layer = Layer(_by_direction(case.lit(mesh, even_light(camera))), shown)
         words_of_axes = dict(enumerate(meaning.ways(mesh.run())))
         table = Step("", "vizlight.maps.kinds", words_of_axes, colors=OF_AXES)
