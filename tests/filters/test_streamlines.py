@@ -618,6 +618,8 @@ def test_strokes_that_travel_have_whole_lines_and_need_a_length_and_a_sense():
     assert {"width", "phase", "passing", "grown"} <= set(made.point_data)
     assert made.field_data["period"][0] == pytest.approx(2 * 0.25 / 3)
     assert np.all(made["passing"] == 2)
+    # The gaps between curves tell nothing of strokes, which are parts of them.
+    assert not {"largest_gap", "nearest"} & set(made.field_data.keys())
     with pytest.raises(ValueError, match="travel: expected stroke_length beside it"):
         vizlight.streamlines(plane, tangents="V", travel=2.0)
     with pytest.raises(ValueError, match="travel: expected vectors, which have a sense"):

@@ -109,7 +109,17 @@ def test_strokes_are_nearer_where_the_field_turns_faster():
     assert spacings[1] < 0.8 * spacings[0]
 
 
-@pytest.mark.slow
+def test_strokes_of_a_large_grid_follow_it_in_a_share_of_its_points():
+    turn, grid = 0.005, sheet(0.005, count=800)
+    strokes = vizlight.look(grid).drawing.layers[1].mesh
+    assert strokes.arguments[0].run().n_points < grid.n_points / 3
+    lines = strokes.run()
+    angle = turn * lines.points[:, 0]
+    along = np.cos(angle) * lines["Tangents"][:, 0] + np.sin(angle) * lines["Tangents"][:, 1]
+    assert along.min() > np.cos(0.01)
+    assert np.ptp(lines.points, axis=0)[:2] == pytest.approx([799, 399], rel=0.02)
+
+
 def test_a_faster_field_is_hues_and_a_faster_one_yet_its_speed_alone():
     look = vizlight.look(sheet(0.9, 300))
     assert "hue tells its course" in look.notes[0]

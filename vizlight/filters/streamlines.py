@@ -16,6 +16,7 @@ from vizlight import _check, _progress
 from vizlight._questions import QUESTIONS
 from vizlight._types import Array, Exponent, Facing, FeatureAngle, Indices, Model, Precision
 from vizlight.filters.illuminate import light_mesh
+from vizlight.geometry.lines.even import evenness
 from vizlight.geometry.lines.tracing import Tracing
 from vizlight.mesh import blocks, georeference, meaning, records, strokes, tracers
 from vizlight.mesh.normals import NORMALS, closest_normals, onlooker, with_normals
@@ -212,10 +213,10 @@ def streamlines(
         vectors, in the unit of the mesh, and ``speed`` the length of the vectors, in their unit,
         where they are vectors of 3 components; where the mesh has arrays of these names, they are
         ``vizlight age`` and ``vizlight speed``. Confined lines have the field array ``drift``, the
-        largest distance from the surface; evenly spaced ones ``largest_gap``, the largest distance
-        of any place from a line as it is drawn, understated by at most 0.01, ``nearest``, the
-        distance to the next line that 5 % of the places on lines fall below, both in spacings, and
-        ``closed``, the number of closed lines.
+        largest distance from the surface; evenly spaced ones ``closed``, the number of closed
+        lines, and, where they are no strokes, ``largest_gap``, the largest distance of any place
+        from a line as it is drawn, understated by at most 0.01, and ``nearest``, the distance to
+        the next line that 5 % of the places on lines fall below, both in spacings.
 
     Raises
     ------
@@ -522,9 +523,14 @@ def _lines(
     # The spacing is scaled like the mesh, whose longest side is 1 here.
     spacing = options.spacing / size
     tracers.check_spacing(tracer, spacing, size)
-    curves, facts = tracer.even(located, how, spacing, report)
+    curves, closed = tracer.even(located, how, spacing, report)
     lines = tracer.lines(curves, unsigned)
-    if options.confined and options.stroke_length is not None:
+    facts: dict[str, float] = {"closed": closed}
+    if options.stroke_length is None:
+        # Strokes are parts of the curves, with gaps between them.
+        gap, nearest = evenness(tracer.flow, spacing, curves)
+        facts |= {"largest_gap": gap, "nearest": nearest}
+    elif options.confined:
         lines = strokes.inside(lines, tracer.cells.border, spacing)
     for key, value in facts.items():
         lines.field_data[key] = [value]

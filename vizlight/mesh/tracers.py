@@ -164,14 +164,12 @@ class CellTracer:
 
     def even(
         self, seeds: CellPlaces | None, how: Tracing, spacing: float, report: Callable[[int], None]
-    ) -> tuple[Curves, dict[str, float]]:
-        """Return evenly spaced curves, and facts on their evenness; ``report`` as for traced."""
+    ) -> tuple[Curves, int]:
+        """Return evenly spaced curves, and the number of closed ones; ``report`` as for traced."""
         total = even.place_count(self.flow, spacing)
-        curves, closed = even.evenly_spaced(
+        return even.evenly_spaced(
             self.flow, spacing, how, seeds=seeds, report=lambda done: report(100 * done // total)
         )
-        gap, near = even.evenness(self.flow, spacing, curves)
-        return curves, {"largest_gap": gap, "nearest": near, "closed": closed}
 
     def lines(self, curves: Curves, unsigned: Vectors | None = None) -> pv.PolyData:
         """Return curves as polylines with the point arrays of the mesh, TRACED of length 1.

@@ -448,28 +448,36 @@ class _Horizons:
         An odd number of other azimuths is the reference: structures of a whole field may fall
         alike into a number of azimuths, its half and its double.
         """
+        reference = (2 * count + count // 2 + 1, REFERENCE)
+        self._sample((FEWEST // 2, 0.0), (count // 2, 0.5), reference)
         mean = self.samples(count)
-        off = np.abs(mean - self._samples(2 * count + count // 2 + 1, REFERENCE))
+        off = np.abs(mean - self.sampled[reference])
         return np.maximum(off, np.abs(mean - self.samples(count // 2)) / 2)
 
     def samples(self, count: int) -> Array:
-        """Return the mean sky over azimuths that the random nodes see through every cell."""
-        if count > FEWEST // 2:
-            return (self.samples(count // 2) + self._samples(count // 2, 0.5)) / 2
-        return self._samples(count, 0.0)
+        """Return the mean sky that the random nodes see, of a number whose spread is known."""
+        half = count // 2
+        if half < FEWEST // 2:
+            return self.sampled[count, 0.0]
+        return (self.samples(half) + self.sampled[half, 0.5]) / 2
 
-    def _samples(self, count: int, shift: float) -> Array:
-        if (count, shift) not in self.sampled:
-            view, total = _View(self.field, self.slopes, 0), np.zeros(len(self.some[0]))
-            right, up = (slope[self.some] for slope in self.slopes)
-            stretch = self.field.stretch[self.some[0]]
-            # NumPy follows the rays of all azimuths at once that see the field turned alike.
-            for _, alike in itertools.groupby(_ways(count, shift), view.turn_of):
-                ways = list(alike)
-                for way, t in zip(ways, self._horizons(view, ways), strict=True):
-                    total += _seen(t, right, up, stretch, way, self.openness)
+    def _sample(self, *every: tuple[int, float]) -> None:
+        """Keep the mean sky through every cell over azimuths, each of a number and a shift."""
+        sets = [each for each in every if each not in self.sampled]
+        view = _View(self.field, self.slopes, 0)
+        right, up = (slope[self.some] for slope in self.slopes)
+        stretch = self.field.stretch[self.some[0]]
+        horizons = dict[tuple[float, float], Array]()
+        # NumPy follows the rays of all azimuths at once that see the field turned alike.
+        azimuths = sorted((way for each in sets for way in _ways(*each)), key=view.turn_of)
+        for _, alike in itertools.groupby(azimuths, view.turn_of):
+            ways = list(alike)
+            horizons |= zip(ways, self._horizons(view, ways), strict=True)
+        for count, shift in sets:
+            total = np.zeros(len(self.some[0]))
+            for way in _ways(count, shift):
+                total += _seen(horizons[way], right, up, stretch, way, self.openness)
             self.sampled[count, shift] = total / count
-        return self.sampled[count, shift]
 
     def _horizons(self, view: _View, ways: list[tuple[float, float]]) -> list[Array]:
         """Return slopes of the horizons of the random nodes toward azimuths of one turn."""

@@ -89,6 +89,8 @@ EVEN = 0.05
 MOST_FINITE = 1e300
 #: Most cells of a volume in which lines are evenly spaced, and the number of lines in larger ones.
 MOST_CELLS, SEEDS = 250_000, 300
+#: Most cells of a grid all of which have strokes, and fewest points that others keep along an axis.
+MOST_TRACED, FEWEST = 100_000, 100
 
 
 def vectors(case: Case) -> Drawing:
@@ -111,7 +113,8 @@ def vectors(case: Case) -> Drawing:
     if room * TURN < LEAST_SPACING:
         return _without_strokes(case, mesh, camera, room)
     spacing = min(room * TURN * case.width * pixel, mesh.run().length * SPACING)
-    strokes = _strokes(mesh, case.wishes.scene("none", camera), array, spacing)
+    traced = _coarser(case, mesh, spacing)
+    strokes = _strokes(traced, case.wishes.scene("none", camera), array, spacing)
     if strokes is None or _is_even(mesh.run(), array.name):
         return _lit(case, mesh, camera, strokes)
     drawing = _speed(case, mesh, camera, strokes)
@@ -588,6 +591,20 @@ def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | No
         # The light tells the direction by itself where no line can be laid.
         return None
     return strokes
+
+
+def _coarser(case: Case, mesh: Step, spacing: float) -> Step:
+    """Return the surface of a share of the points of a large grid, where strokes need no more."""
+    grid, every = case.data.run(), int(_fine_step(mesh.run(), spacing))
+    is_grid = isinstance(grid, pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid)
+    if not is_grid or case.contents.dimension != 2 or case.on_globe:
+        return mesh
+    rate = [max(min(every, size // FEWEST), 1) for size in grid.dimensions]
+    if grid.n_cells <= MOST_TRACED or max(rate) == 1:
+        return mesh
+    whole = [end for size in grid.dimensions for end in (0, size - 1)]
+    coarse = Step("coarse", ".extract_subset", case.data, whole, rate)
+    return case.wishes.joined(replace(case, data=coarse).surface, case.needed_array)
 
 
 def _fine_step(surface: pv.DataSet, spacing: float) -> float:

@@ -71,8 +71,8 @@ ARROW = {"tip_length": 0.4, "tip_radius": 0.18, "shaft_radius": 0.06}
 #: Most atoms of a molecule that are balls, their size in radii of van der Waals, and the sticks
 #: between them, in angstroms.
 MOST_BALLS, BALL, STICK = 1000, 0.2, {"radius": 0.1, "n_sides": 20}
-#: Most lines of a dense set that are shown by their direction.
-MOST_LINES = 7000
+#: Most lines of a dense set that are shown by their direction, and the colour around dense ones.
+MOST_LINES, OUTLINE = 7000, "black"
 #: Most atoms without bonds that are balls, and the size of these, which touch each other.
 MOST_ALONE, BALL_ALONE = 20_000, 0.5
 #: Size of atoms and sticks beside the chains of a large molecule, in that of others.
@@ -98,29 +98,21 @@ def lines(case: Case) -> Drawing:
         case = replace(case, viewpoint=eye_across(mesh.run()))
     camera = case.camera(mesh)
     scene = case.scene(camera)
-    light, pen = dict(case.wishes.light), _pen(case, camera)
-    drawn: Keywords = {"scene": scene, **pen, **case.wishes.drawn(light)}
+    light = dict(case.wishes.light)
     keys: list[Keywords] = [{"scene": scene}]
-    words, note = "lines by their heading", ""
     name, array = case.wishes.picture.get("scalars"), case.array
     is_open = name is None and case.wishes.question == "auto" and array is None
     if is_open and (case.is_beside or case.is_of_earth):
         # Borders on a map, or edges and paths beside solids, whose direction tells nothing.
         color = ink_on(pv.Color(case.wishes.background)) if case.is_beside else ONLY
-        layer = Layer(mesh, {"scene": even_light(camera), "color": color, **pen})
+        layer = Layer(mesh, {"scene": even_light(camera), "color": color, **_pen(case, camera)})
         title = "" if case.is_beside else file_named(mesh)
         keys = [surfaces.TITLE_ALONE | {"title": title}] if title else []
         lit = case.lit(mesh, scene, **light)
         return Drawing([layer], camera, scene, lit, "lines", keys, kind=case.data)
     if is_open or name == DIRECTION:
         lit = case.lit(mesh, scene, **light)
-        is_dense = isinstance(pen.get("halo"), str)
-        longest = _longest(mesh) if is_dense else None
-        if longest is not None:
-            camera = case.camera(longest)
-            mesh = longest
-        if is_dense:
-            pen = _pen(replace(case, data=mesh), camera, can_be_round=True)
+        mesh, camera, pen = _longest(case, camera)
         is_round = pen.get("render_lines_as_tubes", False)
         lamp = case.wishes.scene("lamp", camera) if is_round else even_light(camera)
         shown = {"scene": lamp, "scalars": RGB, "rgb": True} | pen
@@ -129,11 +121,13 @@ def lines(case: Case) -> Drawing:
         table = Step("", "vizlight.maps.kinds", words_of_axes, colors=OF_AXES)
         key: Keywords = {"question": "value", "cmap": table}
         key["title"] = named(file_named(case.data), "direction")
-        if longest is not None:
+        if mesh is not case.data:
             key["title"] += f"; the longest {mesh.run().n_cells} of {case.data.run().n_cells} lines"
         words = "lines by their direction"
-        notes = [] if longest is None else [longest.note]
+        notes = [] if mesh is case.data else [mesh.note]
         return Drawing([layer], camera, scene, lit, words, [key], notes, kind=case.data)
+    drawn: Keywords = {"scene": scene, **_pen(case, camera), **case.wishes.drawn(light)}
+    words, note = "lines by their heading", ""
     if case.question == "value":
         array = case.needed_array
         is_vector = array.role == "vectors"
@@ -156,21 +150,28 @@ def lines(case: Case) -> Drawing:
     return Drawing(layers, camera, scene, lit, words, keys, notes, kind=case.data)
 
 
-def _longest(lines: Step) -> Step | None:
-    """Return the step that takes the longest of many lines, None where there are not too many.
+def _longest(case: Case, camera: Step) -> tuple[Step, Step, Keywords]:
+    """Return the step that takes the longest of too many lines, or all, its camera and its pen.
 
     Short lines hide the bundles that long ones form.
     """
-    mesh = lines.run()
+    mesh: pv.DataSet = case.data.run()
     if mesh.n_cells <= MOST_LINES:
-        return None
+        return case.data, camera, _pen(case, camera, can_be_round=True)
     lengths = mesh.compute_cell_sizes(area=False, volume=False)["Length"]
     least = float(f"{np.partition(lengths, -MOST_LINES)[-MOST_LINES]:.3g}")
-    sized = Step("sized", ".compute_cell_sizes", lines, area=False, volume=False)
+    sized = Step("sized", ".compute_cell_sizes", case.data, area=False, volume=False)
     longest = Step("longest", ".threshold", sized, least, scalars="Length")
     longest = Step("longest", ".extract_surface", longest, algorithm="dataset_surface")
     longest.note = f"lines of {least:g} and longer are shown"
-    return longest
+    closer = case.camera(longest)
+    pen = _pen(replace(case, data=longest), closer, can_be_round=True)
+    # Where a part is dense all are, which takes longer to measure.
+    if not _is_dense(pen):
+        of_all = _pen(case, camera, can_be_round=True)
+        if not _is_dense(of_all):
+            return case.data, camera, of_all
+    return longest, closer, pen
 
 
 def is_tree(mesh: pv.DataSet) -> bool:
@@ -370,10 +371,15 @@ def _pen(case: Case, camera: Step, *, can_be_round: bool = False) -> Keywords:
     if crowd > MATTED and can_be_round:
         return pen | {"halo": False, "render_lines_as_tubes": True}
     if widest < thinnest:
-        return pen | {"halo": "black"}
+        return pen | {"halo": OUTLINE}
     # The halo of a wide line is as wide as that of a thin one.
     share = BAND * case.width / pen["line_width"]
     return pen | {"halo": round(share, 2)} if share < 1 else pen
+
+
+def _is_dense(pen: Keywords) -> bool:
+    """Return whether lines are drawn as dense ones are."""
+    return pen.get("halo") == OUTLINE or "render_lines_as_tubes" in pen
 
 
 def _crowd(places: Array, lengths: Array, camera: Step) -> float:
