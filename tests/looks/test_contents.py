@@ -162,6 +162,7 @@ def test_clouds_and_layers_are_no_ground():
     names = {"cloud_top_height": "values", "snow_depth": "values", "surface_height": "heights"}
     names |= {"geopotential_height": "values", "sea_surface_height": "values"}
     names |= {"surface_geopotential_height": "heights", "water_table_depth": "values"}
+    names |= {"depth_of_90_percent_of_irradiance": "values"}
     for name in names:
         mesh[name] = np.linspace(0, 1, mesh.n_points) ** 2
     assert {array.name: array.role for array in Contents(mesh).arrays} == names
@@ -194,6 +195,14 @@ def test_of_several_vectors_a_velocity_comes_first():
         plane[name] = 0.1 + np.arange(16.0) ** power
     assert vizlight.look(plane).array == "SV_U,SV_V"
     assert vizlight.look(plane).drawing.keys[0]["title"].startswith("speed")
+
+
+def test_whole_percents_are_no_labels():
+    mesh = pv.ImageData(dimensions=(9, 9, 1))
+    mesh["ice"] = np.repeat(np.arange(0, 90, 10), 9)
+    assert Contents(mesh).arrays[0].role == "kinds"
+    meaning.attach(mesh, meaning.Meaning(arrays={"ice": {"units": "%"}}))
+    assert Contents(mesh).arrays[0].role == "values"
 
 
 def test_labels_may_be_floats_with_holes():

@@ -81,6 +81,27 @@ def test_an_edge_of_a_mesher_that_no_face_has_is_named(tmp_path):
     assert mesh.celltypes.tolist() == [pv.CellType.TRIANGLE]
 
 
+def test_elements_of_nastran_may_have_long_fields(tmp_path):
+    pytest.importorskip("meshio")
+    rows = [
+        f"GRID    {i + 1:8d}        {i % 2:8.1f}{i // 2 % 2:8.1f}{i // 4:8.1f}" for i in range(8)
+    ]
+    ids = [1, 1, 1, 2, 4, 3, 5, 6, 8, 7]
+    short = (
+        "CHEXA   " + "".join(f"{i:8d}" for i in ids[:8]) + "+       \n+       " + "       8       7"
+    )
+    fours = [ids[:4], ids[4:8], ids[8:]]
+    heads = ["CHEXA*  ", "*       ", "*       "]
+    long = "\n".join(
+        head + "".join(f"{i:16d}" for i in four) for head, four in zip(heads, fours, strict=True)
+    )
+    cells = []
+    for element in (short, long):
+        text = "\n".join(["BEGIN BULK", *rows, element, "ENDDATA", ""])
+        cells.append(vizlight.read(saved(tmp_path / "part.bdf", text)).cells_dict)
+    np.testing.assert_array_equal(*(each[pv.CellType.HEXAHEDRON] for each in cells))
+
+
 def test_references_of_points_leave_their_name_to_those_of_cells(tmp_path):
     meshio = pytest.importorskip("meshio")
     points, corners = np.eye(4)[:, :3], [("tetra", [[0, 1, 2, 3]])]

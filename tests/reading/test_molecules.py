@@ -242,6 +242,23 @@ def test_ligands_are_what_is_in_no_chain_without_water(tmp_path):
     assert molecules.ligands(vizlight.read(written(tmp_path, WATER, "w.xyz"))).n_points == 0
 
 
+def test_the_phosphate_of_a_lipid_is_no_nucleotide(tmp_path):
+    def masks(residue, *atoms):
+        lines = [hetero(name, residue, 1, (i, 0, 0), name[1]) for i, name in enumerate(atoms)]
+        return vizlight.read(written(tmp_path, "".join(lines), "a.pdb"))["backbone_mask"].sum()
+
+    assert masks("DPP", " P  ", " C3 ") == 0
+    assert masks("PSU", " P  ", " C3'") == masks(" DA", " P  ") == 1
+
+
+def test_water_is_left_out_of_a_crowd_of_molecules(tmp_path):
+    lipids = [hetero(" C1 ", "LIP", i // 2, (1.4 * i, 0, 0), "C") for i in range(3000)]
+    water = [hetero(" O  ", "HOH", i, (1.4 * i, 9, 0), "O") for i in range(3000)]
+    look = vizlight.look(written(tmp_path, "".join(lipids + water), "a.pdb"))
+    assert "left out: HOH (3000 atoms)" in look.drawing.notes
+    assert look.drawing.layers[0].mesh.run().bounds[3] == 0
+
+
 def test_a_backbone_needs_a_molecule_of_residues(tmp_path):
     water = vizlight.read(written(tmp_path, WATER, "water.xyz"))
     with pytest.raises(ValueError, match="atoms: expected a molecule of a PDB or CIF file"):

@@ -3,7 +3,8 @@
 import struct
 
 import numpy as np
-from refusals import read_warned, saved
+import pytest
+from refusals import read_warned, refused, saved
 
 import vizlight
 
@@ -33,3 +34,11 @@ def test_lines_of_traces_are_a_volume_by_their_depth_points(tmp_path):
 def test_traces_without_places_stand_in_a_row(tmp_path):
     mesh = read_warned(written(tmp_path, [(0, 0)] * 6), "stand in a row by number")
     assert np.unique(mesh.points[:, 0]).tolist() == [*range(6)]
+
+
+@pytest.mark.parametrize(("place", "number"), [(3224, 10), (3600 + 114, 5)])
+def test_headers_by_which_vtk_ends_the_process(tmp_path, place, number):
+    data = bytearray(written(tmp_path, [(25 * i, 0) for i in range(6)]).read_bytes())
+    struct.pack_into(">H", data, place, number)
+    reason = "samples of the format 10" if number == 10 else "4 samples by its header, 5 by that of"
+    refused(saved(tmp_path / "other.segy", data), reason)

@@ -87,6 +87,13 @@ def test_radians(tmp_path):
     assert vizlight.read(path).bounds[2:4] == pytest.approx((-90, 90), abs=1e-3)
 
 
+def test_places_beyond_the_poles_are_no_degrees(tmp_path):
+    path = written(tmp_path, TABLES["from 0"], scale=1e4, units="", topology=UGRID)
+    mesh = vizlight.read(path)
+    assert mesh.bounds_size[1] > 1e6
+    assert mesh.field_data.get("unit", [""])[0] != "degree"
+
+
 def test_a_node_that_is_not_there(tmp_path):
     table = (("face", "three"), FACES + 2, {"start_index": 1})
     refused(written(tmp_path, table, topology=UGRID), "'faces' has the node 643 of 642")

@@ -110,11 +110,12 @@ _NO_GROUND = re.compile(
     r"cloud|wave|swell|layer|snow|canop|tree|tropopause|mixing|mixed|optical|melt|penetration|mld|pbl"
     r"|(?<!surface[ _])geopotential(?!.*(surface|orog))|sea[ _]surface|free[ _-]surface|tid(e|al)"
     r"|anomaly|dynamic[ _]topography|flood|water[ _]table|isotherm|thermocline|soil|freezing"
-    r"|condensation"
+    r"|condensation|irradiance|euphotic|secchi"
 )
-#: What describes the grid of a model, and changes with none of its steps.
+#: What describes the grid of a model, and changes with none of its steps, and flags of its values.
 _OF_GRID = re.compile(
-    r"(^|[^a-z])(mask|mapfac\w*|map (scale )?factor|coriolis|(sin|cos)alpha|cell[ _]area"
+    r"(^|[^a-z])(mask|flags?($|[^a-z])|mapfac\w*|map (scale )?factor|coriolis|(sin|cos)alpha"
+    r"|cell[ _]area"
     r"|area[ _]of[ _]grid[ _]cell|angle between|angle of (the )?grid|grid_angle\w*|grid angle)"
 )
 #: Words for how a vehicle with instruments moves.
@@ -361,8 +362,8 @@ def sorted_arrays(mesh: pv.DataSet, *, raster: bool = False) -> tuple[Named, ...
                 continue
             array = _described(name, values, of_cells=of_cells, named=named)
             said = _words_of(mesh, name)
-            if array is not None and array.role == "values" and meaning.flags(mesh, name):
-                array = replace(array, role="kinds")
+            if array is not None:
+                array = replace(array, role=_stated_role(mesh, array))
             if array is not None and array.role == "colors" and _is_shade(mesh, values):
                 continue
             if meaning.is_planar(values) and (name == texture or mesh.bounds_size[2]):
@@ -493,6 +494,15 @@ def _words_of(mesh: pv.DataSet, name: str) -> str:
     attributes = meaning.of(mesh).arrays.get(name, {})
     standard = attributes.get("standard_name", "")
     return f"{standard} {'' if standard else attributes.get('long_name', '')}".lower()
+
+
+def _stated_role(mesh: pv.DataSet, array: Named) -> Role:
+    """Return the role of an array by the words of its file: flags are kinds, shares are none."""
+    if meaning.flags(mesh, array.name):
+        return "kinds" if array.role == "values" else array.role
+    units = meaning.of(mesh).arrays.get(array.name, {}).get("units", "")
+    is_share = array.role == "kinds" and array.distinct > 1 and units in ("%", "percent")
+    return "values" if is_share else array.role
 
 
 def _described(name: str, values: Raw, *, of_cells: bool, named: bool) -> Named | None:

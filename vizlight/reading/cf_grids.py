@@ -105,6 +105,8 @@ _ASIDE = re.compile(r".*(_bnds|_bounds|_vertices)|crs|spatial_ref", re.IGNORECAS
 _TURNING = "GRIB_alternativeRowScanning"
 #: Degrees beyond 360 from which a grid shows a part of the earth twice.
 _MORE_THAN_ALL = 10.0
+#: Latitude of a pole in degrees, with its rounding.
+_MOST_NORTH = 90.5
 #: Axes that are no place: of them the first value is taken.
 _MEMBERS = (
     r"(ensemble|member|realization|realisation|number|quantile|percentile|band|channel|basin"
@@ -637,6 +639,9 @@ class _Reader:
         attributes = self.file[x].attrs
         unit = str(attributes.get("units", ""))
         kind = _in_degrees(x, attributes)
+        if kind and not unit and np.nanmax(np.abs(self.file[y].values), initial=0) > _MOST_NORTH:
+            kind = ""
+            self.said.notes.append(f"{x!r} and {y!r} are too large for degrees")
         if kind and not unit and listed.seem_radians(self.file[x].values, self.file[y].values):
             kind = "radians"
             self.said.notes.append("x and y taken for radians by their ranges")

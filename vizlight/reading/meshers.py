@@ -41,7 +41,7 @@ def read(path: Path) -> pv.DataSet:
                 # NumPy warns of lines without numbers, which the reader counts, and of others.
                 warnings.simplefilter("ignore")
                 warnings.filterwarnings("error", "string or file could not be read to its end")
-                data = reader.read(path)
+                data = _with_short_fields(path, reader) if kind == "nastran" else reader.read(path)
         except (meshio.ReadError, LookupError, ValueError) as error:
             if str(error).startswith("Incompatible cell data"):
                 data = _without_data(path, reader)
@@ -78,6 +78,33 @@ def read(path: Path) -> pv.DataSet:
         more = f" (the first of {len(_SAID.texts)} warnings)" if len(_SAID.texts) > 1 else ""
         _check.warn(f"file: '{path}': {_SAID.texts[0]}{more}")
     return mesh
+
+
+#: An element of Nastran in lines of four long fields, and one of the lines after its first.
+_LONG_ELEMENT = re.compile(rb"(?m)^(C[A-Z0-9]+)\*(.*\n(?:\*.*\n)*)")
+
+
+def _with_short_fields(path: Path, reader: Foreign) -> Foreign:
+    """Return what meshio reads of a file of Nastran, of which it takes elements in short fields."""
+    content = path.read_bytes()
+    if not _LONG_ELEMENT.search(content):
+        return reader.read(path)
+    with _supervise.folder(path) as folder:
+        draft = folder / path.name
+        draft.write_bytes(_LONG_ELEMENT.sub(_in_short_fields, content))
+        return reader.read(draft)
+
+
+def _in_short_fields(element: re.Match[bytes]) -> bytes:
+    # Lines begin with a field of eight: the first with the name, of which the star is left.
+    lines = (b" " * (len(element[1]) + 1) + element[2]).splitlines()
+    fields = [line[at : at + 16].strip() for line in lines for at in (8, 24, 40, 56)]
+    words = [b"%-8b" % field for field in fields]
+    starts = [element[1], *[b"+"] * len(words)]
+    return b"".join(
+        b"%-8b%b\n" % (start, b"".join(words[8 * k : 8 * k + 8]).rstrip())
+        for k, start in enumerate(starts[: -(-len(words) // 8)])
+    )
 
 
 #: Values of cells in a file of gmsh, which need not be those of all cells.

@@ -74,6 +74,8 @@ WATERS = {"HOH", "WAT", "H2O", "DOD", "SOL", "TIP", "TIP3", "TIP4", "TP3", "SPC"
 MOST_BESIDE = 1000
 #: Names and elements of the atoms that stand for a residue of a protein and of a nucleic acid.
 _BACKBONE = {("CA", "C"), ("P", "P")}
+#: Names of an atom of the sugar of a nucleotide.
+_SUGAR = {"C3'", "C3*"}
 
 
 def of_pdb(path: Path) -> pv.PolyData:
@@ -249,7 +251,16 @@ def attach_chains(
     number = {name: i for i, name in enumerate(every)}
     of_chain = np.array([number[name] for name in chains], dtype=np.intp)
     mesh.point_data["chain"] = of_chain
-    marks = np.array([name in _BACKBONE for name in names], dtype=np.uint8)
+    # Lipids have a phosphate too, but no sugar.
+    sugars = {residue for residue, (name, _) in zip(residues, names, strict=True) if name in _SUGAR}
+    bases = _OF_CHAINS | sugars
+    marks = np.array(
+        [
+            name in _BACKBONE and (name[0] != "P" or residue in bases)
+            for residue, name in zip(residues, names, strict=True)
+        ],
+        dtype=np.uint8,
+    )
     places, carbons = np.asarray(mesh.points), np.flatnonzero(marks)
     if len(carbons):
         oxygens = np.flatnonzero([name == ("O", "O") for name in names])

@@ -23,6 +23,10 @@ WAYS: dict[tuple[str, ...], str] = {
     (".hdf5", ".he5"):
         "look at an array of it by xarray: vizlight.look(xarray.open_dataset('{name}', "
         "group='...'))",
+    (".e57",):
+        "CloudCompare makes a .las of it: "
+        "CloudCompare -SILENT -O '{name}' -C_EXPORT_FMT LAS -SAVE_CLOUDS",
+    (".par", ".rec"): "dcm2niix makes a .nii of it: dcm2niix '{name}'",
     (".geo",): "gmsh makes a mesh of it: gmsh -3 -format msh2 '{name}'",
     (".step", ".stp", ".iges", ".igs", ".brep"):
         "gmsh of pip makes a mesh of it: gmsh -2 -bin -clcurv 48 '{name}' -o '{stem}.stl'",

@@ -14,6 +14,9 @@ from vizlight._types import Array, Foreign
 SUFFIXES = (".segy", ".sgy")
 #: Distance of traces from which a line ends between them, in that of most.
 _NEXT_LINE = 1.5
+#: Size of the headers up to the first trace, and places in them of the number of samples, of their
+#: format, and of the number of samples of that trace; formats that VTK reads.
+_HEADERS, _COUNTS, _FORMATS = 3840, (3220, 3224, 3714), {1, 2, 3, 5, 8}
 
 
 def read(path: Path) -> pv.DataSet:
@@ -21,10 +24,24 @@ def read(path: Path) -> pv.DataSet:
 
     VTK's reader takes the former alone, which are 0 in files of stacked traces. Where both are, the
     number of a trace is its place.
+
+    Raises
+    ------
+    ValueError
+        If VTK lacks the format of the samples, or the headers differ: it ends the process then.
     """
     # The module loads a large part of VTK.
     from vtkmodules.vtkIOSegY import vtkSegYReader
 
+    with path.open("rb") as file:
+        head = file.read(_HEADERS)
+    if len(head) == _HEADERS:
+        samples, form, in_trace = (int.from_bytes(head[at : at + 2], "big") for at in _COUNTS)
+        if form not in _FORMATS:
+            raise ValueError(f"samples of the format {form} of SEG-Y; segyio reads them")
+        if in_trace and in_trace != samples:
+            counts = f"{samples} samples by its header, {in_trace} by that of a trace"
+            raise ValueError(f"{counts}; segyio reads it: segyio.open(file, strict=False)")
     reader = vtkSegYReader()
     reader.SetFileName(str(path))
     mesh = _updated(reader)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,6 +35,8 @@ from vizlight.reading import molecules, neurons
 from vizlight.vtk.cells import connectivity
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from vizlight._types import Array, Keywords
     from vizlight.looks.recipes.drawing import Case
 
@@ -89,8 +92,11 @@ def lines(case: Case) -> Drawing:
     """Draw lines lit by their heading or in the colours of their direction, or of values.
 
     Values are drawn without light, so that lightness tells them too: hues alone are hard to see on
-    thin lines.
+    thin lines. Of a molecule water is left out.
     """
+    dry = _without_water(lines, case)
+    if dry is not None:
+        return dry
     mesh = case.data
     if case.is_of_body:
         case = replace(case, viewpoint=eye_on_body(mesh.run()))
@@ -212,10 +218,9 @@ def molecule(case: Case, size: float = 1.0) -> Drawing:
     if array.name == "radius":
         # Balls have it as their size alone.
         return lines(case)
-    dry, note = _without_water(atoms)
-    if note:
-        drawing = molecule(replace(case, data=dry, contents=Contents(dry.run())), size)
-        return replace(drawing, notes=[*drawing.notes, note])
+    dry = _without_water(partial(molecule, size=size), case)
+    if dry is not None:
+        return dry
     bonds = atoms
     if array.role == "kinds":
         bonds = Step("halves", "files.surface_of", atoms, labels=array.name)
@@ -249,17 +254,19 @@ def molecule(case: Case, size: float = 1.0) -> Drawing:
     return replace(drawing, layers=[*drawing.layers, *case.strokes([cell])], keys=keys)
 
 
-def _without_water(atoms: Step) -> tuple[Step, str]:
-    """Return the step that takes the atoms beside those of water, and a note on these."""
+def _without_water(draw: Callable[[Case], Drawing], case: Case) -> Drawing | None:
+    """Draw the atoms beside those of water, None where there are none of either."""
+    atoms = case.data
     counts = molecules.beside_chains(atoms.run())
     names = meaning.flags(atoms.run(), molecules.RESIDUE)
     water = [number for number, name in names.items() if name in molecules.WATERS & set(counts)]
     if len(water) != 1 or len(names) == 1:
-        return atoms, ""
+        return None
     ends, name = (water[0] - 0.5, water[0] + 0.5), names[water[0]]
     dry = Step("dry", ".threshold", atoms, ends, invert=True, scalars=molecules.RESIDUE)
     dry = Step("dry", ".extract_surface", dry, algorithm="dataset_surface")
-    return dry, f"left out: {name} ({counts[name]} atoms)"
+    drawing = draw(replace(case, data=dry, contents=Contents(dry.run())))
+    return replace(drawing, notes=[*drawing.notes, f"left out: {name} ({counts[name]} atoms)"])
 
 
 def _molecule_named(atoms: Step) -> str:
