@@ -679,7 +679,8 @@ def kinds_of(mesh: pv.DataSet, name: str, most: int | None = None) -> Sequence[f
         areas = None
         if isinstance(mesh, pv.PolyData) and name not in mesh.point_data:
             areas = mesh.compute_cell_sizes(length=False, volume=False)["Area"][is_finite]
-        sizes = np.bincount(place.reshape(-1), areas)
+        # Lines have no area.
+        sizes = np.bincount(place.reshape(-1), areas if areas is not None and areas.any() else None)
         largest = np.sort(np.argsort(-sizes, kind="stable")[:most])
         if sizes[largest].sum() >= NEARLY_ALL * sizes.sum():
             kinds = kinds[largest]
