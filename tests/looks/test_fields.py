@@ -109,6 +109,7 @@ def test_strokes_are_nearer_where_the_field_turns_faster():
     assert spacings[1] < 0.8 * spacings[0]
 
 
+@pytest.mark.slow
 def test_strokes_of_a_large_grid_follow_it_in_a_share_of_its_points():
     turn, grid = 0.005, sheet(0.005, count=800)
     strokes = vizlight.look(grid).drawing.layers[1].mesh
@@ -120,6 +121,7 @@ def test_strokes_of_a_large_grid_follow_it_in_a_share_of_its_points():
     assert np.ptp(lines.points, axis=0)[:2] == pytest.approx([799, 399], rel=0.02)
 
 
+@pytest.mark.slow
 def test_a_faster_field_is_hues_and_a_faster_one_yet_its_speed_alone():
     look = vizlight.look(sheet(0.9, 300))
     assert "hue tells its course" in look.notes[0]

@@ -595,12 +595,14 @@ def _strokes(mesh: Step, scene: Step, array: Named, spacing: float) -> Step | No
 
 def _coarser(case: Case, mesh: Step, spacing: float) -> Step:
     """Return the surface of a share of the points of a large grid, where strokes need no more."""
-    grid, every = case.data.run(), int(_fine_step(mesh.run(), spacing))
+    grid = case.data.run()
     is_grid = isinstance(grid, pv.ImageData | pv.RectilinearGrid | pv.StructuredGrid)
-    if not is_grid or case.contents.dimension != 2 or case.on_globe:
+    is_large = case.contents.dimension == 2 and grid.n_cells > MOST_TRACED
+    if not is_grid or not is_large or case.on_globe:
         return mesh
+    every = int(_fine_step(mesh.run(), spacing))
     rate = [max(min(every, size // FEWEST), 1) for size in grid.dimensions]
-    if grid.n_cells <= MOST_TRACED or max(rate) == 1:
+    if max(rate) == 1:
         return mesh
     whole = [end for size in grid.dimensions for end in (0, size - 1)]
     coarse = Step("coarse", ".extract_subset", case.data, whole, rate)
