@@ -145,6 +145,22 @@ def test_a_line_that_is_mixed_with_the_background_is_unmixed():
     assert found.deviation[0, 1] > 1.2 * found.deviation[0, 0] > 0.3
 
 
+def test_dark_colours_on_a_bright_background_differ():
+    from vizlight.observers.readers import colors_at
+
+    shades = np.linspace(0.02, 0.3, 6)
+    picture, drawn = np.ones((200, 240, 3)), np.zeros((200, 240), dtype=bool)
+    picture[60:140, 60:180] = np.repeat(shades, 20)[:, np.newaxis]
+    drawn[60:140, 60:180] = True
+    seen = PRINT.look(picture, drawn)
+    at = np.full(6, 100), np.arange(70, 190, 20)
+    # The filter alone leaves less than no light of half of them.
+    assert (seen.colors_at(*at)[:, 0] == 0).sum() >= 3
+    found = colors_at(seen, *at, np.random.default_rng(0), 0.0)
+    expected = eye.lab(np.repeat(shades[:, np.newaxis], 3, axis=1))
+    np.testing.assert_allclose(found.lab[:, 0], expected[:, 0], atol=2.5)
+
+
 def test_a_disc_has_the_share_of_the_filter_over_it():
     looking = Eye.at(400, 60, 400, 0)
     y, x = np.mgrid[:401, :401] - 200.0

@@ -94,9 +94,12 @@ def colors_at(
     each channel. Lines run beside others like them.
     """
     mixed = seen.colors_at(row, column)
-    noisy = mixed + random.normal(0.0, noise, mixed.shape)
+    noise_free = xyz_of_lab(mixed) @ OPPONENT.T
+    noisy = xyz_of_lab(mixed + random.normal(0.0, noise, mixed.shape)) @ OPPONENT.T
     cover = np.maximum(seen.cover[row, column], LEAST_COVER)
-    channels = xyz_of_lab(noisy) @ OPPONENT.T
+    # Beside a bright background the filter leaves dark colours less than no light, which CIELAB
+    # has not: they differ once the background is taken off.
+    channels = seen.channels[row, column] + noisy - noise_free
     alone = (channels - (1 - cover) * seen.ground) / cover
     colors = lab_of_opponent(alone)
     # CIELAB is steeper in dark colours, by the power 2/3 of luminance that lightness is from.
