@@ -254,7 +254,7 @@ def test_pictures_have_keys():
 @pytest.mark.parametrize(
     ("name", "words"),
     [("CT_AVM = 64", "CT_AVM = 64"), ("P_XPM_0331", "P_XPM_0331"), ("air_temp", "Air temp"),
-     ("U_mean", "U mean"), ("_x_", "x")],
+     ("U_mean", "U mean"), ("_x_", "x"), ("von_mises", "Von Mises")],
 )  # fmt: skip
 def test_names_in_capitals_are_as_they_are(name, words):
     assert margins.written(name) == words

@@ -32,7 +32,7 @@ def test_of_too_many_dense_lines_the_longest_are_shown_and_all_are_saved(monkeyp
     lengths = shown.compute_cell_sizes(area=False, volume=False)["Length"]
     assert lengths.min() > np.quantile(np.linspace(0.02, 0.5, 4000), 0.87)
     (key,) = look.drawing.keys
-    assert key["title"].endswith(f"direction; the longest {shown.n_cells} of 4000 lines")
+    assert key["title"] == f"direction of the longest {shown.n_cells} of 4000 lines"
     assert any("lines of 0.44 and longer are shown" in note for note in look.notes)
     assert look.mesh.n_cells == 4000
     # Few, and those that leave room for each other, are all shown.

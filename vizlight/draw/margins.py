@@ -533,6 +533,7 @@ def written(name: str) -> str:
         word if CAPITALS.fullmatch(word) else word.replace("_", " ").strip()
         for word in apart.split()
     )
+    words = re.sub(r"\bvon mises\b", "von Mises", words)
     # Symbols such as dT or u,v are no words.
     is_word = re.match(r"[a-z]{3,}(?=[ ;,.]|$)", words)
     return words[:1].upper() + words[1:] if is_word else words

@@ -126,9 +126,11 @@ def lines(case: Case) -> Drawing:
         words_of_axes = dict(enumerate(meaning.ways(mesh.run())))
         table = Step("", "vizlight.maps.kinds", words_of_axes, colors=OF_AXES)
         key: Keywords = {"question": "value", "cmap": table}
-        key["title"] = named(file_named(case.data), "direction")
-        if mesh is not case.data:
-            key["title"] += f"; the longest {mesh.run().n_cells} of {case.data.run().n_cells} lines"
+        of_all = f"the longest {mesh.run().n_cells} of {case.data.run().n_cells} lines"
+        title = f"direction of {'lines' if mesh is case.data else of_all}"
+        # Alone in its picture, a file needs no name.
+        name = "" if case.wishes.frame is None else file_named(case.data)
+        key["title"] = named(name, title)
         words = "lines by their direction"
         notes = [] if mesh is case.data else [mesh.note]
         return Drawing([layer], camera, scene, lit, words, [key], notes, kind=case.data)
