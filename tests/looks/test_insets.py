@@ -107,6 +107,15 @@ def test_a_solid_has_a_section_where_it_shows_other_values():
         assert names == expected
 
 
+def test_kinds_in_another_one_have_no_section_with_it():
+    mesh = block(lambda x, y, z: x).point_data_to_cell_data()
+    places = mesh.cell_centers().points - np.asarray(mesh.center)
+    mesh.cell_data["part"] = np.where(np.abs(places).max(axis=1) < 4, 1, 2)
+    names, look = shown(mesh, array="part")
+    assert names == []
+    assert any("left out" in note for note in look.drawing.notes)
+
+
 def test_a_bundle_in_a_body_is_shown_from_three_sides():
     turns = np.linspace(0, 3, 40)
     bundle = [

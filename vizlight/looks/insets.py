@@ -13,6 +13,7 @@ import pyvista as pv
 from vizlight.draw.cameras import axes_of, outermost
 from vizlight.draw.margins import LETTERS
 from vizlight.looks import levels
+from vizlight.looks.contents import kinds_of
 from vizlight.looks.framing import (
     OTHER,
     SIDES,
@@ -99,7 +100,11 @@ def _insets(recipe: Recipe, case: Case) -> list[Inset]:
         return []
     if case.contents.dimension == 2:
         return _far_side(case)
-    return [] if case.needed_array.role == "vectors" else _section(case)
+    # Where one kind is around all others, they are drawn without it.
+    is_around = (
+        case.array.role == "kinds" and len(kinds_of(case.surface.run(), case.array.name)) < 2
+    )
+    return [] if case.array.role == "vectors" or is_around else _section(case)
 
 
 def _other_sides(case: Case) -> list[Inset]:
