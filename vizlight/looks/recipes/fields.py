@@ -604,8 +604,7 @@ def _coarser(case: Case, mesh: Step, spacing: float) -> Step:
     rate = [max(min(every, size // FEWEST), 1) for size in grid.dimensions]
     if max(rate) == 1:
         return mesh
-    whole = [end for size in grid.dimensions for end in (0, size - 1)]
-    coarse = Step("coarse", ".extract_subset", case.data, whole, rate)
+    coarse = Step("coarse", ".extract_subset", case.data, list(grid.extent), rate)
     return case.wishes.joined(replace(case, data=coarse).surface, case.needed_array)
 
 

@@ -339,38 +339,19 @@ def _keys(case: Case, scene: Step, title: str) -> list[Keywords]:
 
 
 def sample(case: Case, array: Named) -> Array:
-    """Return some of the finite values of an array.
-
-    Parameters
-    ----------
-    case : Case
-    array : Named
-        Array of one component.
-    """
+    """Return some of the finite values of an array of one component."""
     rows: Array = np.asarray(case.data.run()[array.name], dtype=np.float64)
     rows = rows[:: max(len(rows) // SAMPLE, 1)]
     return rows[np.isfinite(rows)]
 
 
 def is_air(values: Array) -> Bools:
-    """Return which values are those of air in computed tomography.
-
-    Parameters
-    ----------
-    values : ndarray
-    """
+    """Return which values are those of air in computed tomography."""
     return np.asarray(np.abs(values - AIR) < NEAR_AIR)
 
 
 def is_gray(case: Case, array: Named) -> bool:
-    """Return whether values are those of a scan of a body in grey, as radiologists print them.
-
-    Parameters
-    ----------
-    case : Case
-    array : Named
-        Array of one component.
-    """
+    """Return whether values are those of a scan of a body in grey, as radiologists print them."""
     values = sample(case, array)
     is_signed = len(values) > 0 and values.min() < -RINGING * values.max()
     return bool(is_air(values).any()) if is_signed else case.is_of_body
