@@ -107,6 +107,17 @@ def test_a_solid_has_a_section_where_it_shows_other_values():
         assert names == expected
 
 
+def test_strokes_that_would_be_crowded_are_left_out_of_a_small_view():
+    globe = pv.Sphere(theta_resolution=60, phi_resolution=60)
+    x, y, z = np.asarray(globe.points, dtype=np.float64).T
+    globe["wind"] = (2 + 3 * x)[:, np.newaxis] * np.column_stack([-y, x, 0 * z])
+    names, look = shown(globe)
+    assert len(names) == 1
+    drawn, small = look.drawing.layers, look.drawing.insets
+    assert any("width" in layer.keywords for layer in drawn)
+    assert not any("width" in layer.keywords for layer in small)
+
+
 def test_kinds_in_another_one_have_no_section_with_it():
     mesh = block(lambda x, y, z: x).point_data_to_cell_data()
     places = mesh.cell_centers().points - np.asarray(mesh.center)

@@ -53,6 +53,8 @@ GAP, ABOVE, BELOW = 0.03, 2.2, 2.6
 LEAST_AREA, LEAST_LONG = 0.15, 0.4
 #: Share of the largest speed in a section up to which a flow stands still.
 STILL = 0.02
+#: Size of an inset in that of the main view below which strokes of this one would be crowded in it.
+CROWDED = 0.6
 #: Least width of lines in an inset, and what a section takes of the drawing of the main view.
 THINNEST = 1.0
 COLORS = ("scalars", "cmap", "clim", "nan_color", "log_scale")
@@ -248,7 +250,8 @@ def drawn(case: Case, drawing: Drawing) -> Drawing:
         if inset.mesh is not None:
             parts = _of_section(case, drawing, inset.mesh, pixel / scale)
         for layer in parts:
-            if layer.mesh.path in (*FACING, "render.box_edges"):
+            is_crowded = inset.mesh is None and "width" in layer.keywords and scale < CROWDED
+            if layer.mesh.path in (*FACING, "render.box_edges") or is_crowded:
                 continue
             seen: Keywords = {"up": inset.up}
             if layer.mesh is not around:
