@@ -96,22 +96,10 @@ class Viewpoint:
 class Views:
     """Views of a mesh that stand beside each other.
 
-    Parameters
-    ----------
-    toward : tuple of vectors
-        Directions toward the eye.
-    names : tuple of str
-        Words above the views.
-    up : tuple of vectors
-        Directions up in the picture. Default: the usual ones.
-    ends : tuple of (str, str)
-        Words below the left and the right end of each view.
-    unit : str, optional
-        Unit of coordinates, for a bar of lengths.
-    words : str
-        Words for the eye.
-    shown : tuple of int, optional
-        Numbers of the views that show the mesh. Default: all.
+    ``toward`` are the directions toward the eye, ``up`` those up in the picture, by default the
+    usual ones, ``names`` the words above the views, and ``ends`` those below the left and the right
+    end of each. ``unit`` is that of coordinates, for a bar of lengths, and ``words`` are for the
+    eye. The views of the numbers ``shown`` show the mesh, by default all.
     """
 
     toward: tuple[Vector, ...]
@@ -133,16 +121,8 @@ class Views:
 class Inset:
     """Smaller view beside the main one.
 
-    Parameters
-    ----------
-    toward, up : vector
-        Directions toward the eye, and up.
-    name : str
-        Words above it.
-    ends : sequence of str
-        Words below its left and its right end, none without.
-    mesh : Step, optional
-        Step of a part that is shown in it, such as a section. Default: what the main view shows.
+    ``name`` stands above it and ``ends`` below its left and its right end. ``mesh`` is a part that
+    is shown in it, such as a section, by default what the main view shows.
     """
 
     toward: Vector
@@ -154,16 +134,9 @@ class Inset:
 
 @dataclass(frozen=True)
 class Strip:
-    """Insets beside or below the main view.
+    """Insets beside or below the main view, from the upper left.
 
-    Parameters
-    ----------
-    insets : tuple of Inset
-        Insets, from the upper left.
-    share : float
-        Share of the width or the height of the room that is left for the main view.
-    is_below : bool
-        Whether they stand below it.
+    ``share`` is that of the width or the height of the room that is left for the main view.
     """
 
     insets: tuple[Inset, ...]
@@ -180,18 +153,10 @@ def eye_of(
 ) -> Viewpoint:
     """Return from where a mesh is seen best.
 
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh that is drawn.
-    contents : Contents
-        Contents of the data, of which it is drawn.
-    shown : str, optional
-        Name of an array: values, with much of their range to be seen, or the vectors of a volume,
-        which should run across the picture.
-    is_model : bool, default: False
-        Whether it is a file of ``MODELS``: y is up, unless the surface is mirrored in y and not in
-        z, as things are in a plane that stands.
+    ``contents`` are those of the data of which it is drawn, and ``shown`` is the name of an array:
+    values, with much of their range to be seen, or the vectors of a volume, which should run across
+    the picture. Of a file of ``MODELS`` y is up, unless the surface is mirrored in y and not in z,
+    as things are in a plane that stands.
     """
     if contents.flat_axis is not None:
         return _above(mesh, contents.flat_axis)
@@ -302,14 +267,8 @@ def stands_along_y(corners: Array, areas: Array) -> bool:
     """Return whether a surface stands on its lowest points along y, and on no others.
 
     It does where its middle is above the hull of these points, which is a large part of the shadow
-    that it has along y, and where that of its highest ones, and those along z, are small.
-
-    Parameters
-    ----------
-    corners : ndarray, shape (N, 3, 3)
-        Corners of triangles.
-    areas : ndarray, shape (N,)
-        Weights of the triangles, in proportion to their areas.
+    that it has along y, and where that of its highest ones, and those along z, are small. Corners
+    have the shape (N, 3, 3), and areas, in any unit, (N,).
     """
     kept = np.isfinite(corners).all(axis=(1, 2)) & np.isfinite(areas)
     corners, areas = corners[kept], areas[kept]
@@ -395,16 +354,9 @@ def _values(
 
 
 def eye_around(surface: pv.PolyData, *, cut: bool = False, in_body: bool = False) -> Viewpoint:
-    """Return the eye that sees most of a surface from the side, open or not.
+    """Return the eye that sees most of a surface of a volume from the side, open or not.
 
-    Parameters
-    ----------
-    surface : pyvista.PolyData
-        Surface of a volume, such as an isosurface.
-    cut : bool, default: False
-        Whether its box cuts it.
-    in_body : bool, default: False
-        Whether it is in a body, at whose right, before or above which the eye is then.
+    With ``cut`` its box cuts it. ``in_body`` the eye is at the right, before or above.
     """
     _, corners, _ = _triangles(surface)
     if not len(corners):
@@ -416,13 +368,7 @@ def eye_around(surface: pv.PolyData, *, cut: bool = False, in_body: bool = False
 
 
 def eye_across(mesh: pv.PolyData) -> Viewpoint:
-    """Return the eye for data without a side that is up: long side across, thin one in depth.
-
-    Parameters
-    ----------
-    mesh : pyvista.PolyData
-        Mesh with points.
-    """
+    """Return the eye for data without a side that is up: long side across, thin one in depth."""
     points = _finite(mesh.points)
     if len(points) < 2:
         return ISOMETRIC
@@ -436,12 +382,8 @@ def eye_across(mesh: pv.PolyData) -> Viewpoint:
 def eye_on_body(mesh: pv.DataSet) -> Viewpoint:
     """Return the eye for data in the axes of a body: at its right or left, before or above it.
 
-    The data are largest from there; a side is preferred if they are nearly as large from it.
-
-    Parameters
-    ----------
-    mesh : pyvista.DataSet
-        Mesh with points, x to the right, y forward and z up.
+    The data are largest from there; a side is preferred if they are nearly as large from it. x is
+    to the right, y forward and z up.
     """
     points = _finite(mesh.points)
     if not len(points):
@@ -495,22 +437,8 @@ def eye_opposite(
 ) -> Viewpoint | None:
     """Return the eye that sees most of what another one does not see of a closed surface.
 
-    Parameters
-    ----------
-    surface : pyvista.PolyData
-        Surface.
-    eye : Viewpoint
-        The other eye.
-    shown : str
-        Name of an array.
-    has_kinds : bool
-        Whether it is one of kinds.
-
-    Returns
-    -------
-    Viewpoint or None
-        None for open surfaces, and where values, or the lengths of vectors, are alike on both
-        sides, or all kinds are seen.
+    ``shown`` is the name of an array. None is returned for open surfaces, and where values, or the
+    lengths of vectors, are alike on both sides, or all kinds are seen.
     """
     corner_ids, corners, faces = _triangles(surface)
     if not len(corners):
@@ -550,10 +478,7 @@ def _is_closed(normals: Array, areas: Array) -> bool:
 def apart(values: Array, weights: Array, others: Array) -> float:
     """Return the largest difference of the cumulative distributions of values by two weights.
 
-    Parameters
-    ----------
-    values, weights, others : ndarray, shape (N,)
-        Values, and their weights in the one distribution and in the other.
+    All have the shape (N,).
     """
     kept = np.isfinite(values)
     order = np.argsort(values[kept])
@@ -681,26 +606,15 @@ def _in_front(places: Array, count: int, way: Array) -> Bools:
 
 
 def places_on(surface: pv.PolyData) -> Array:
-    """Return places all over a surface, (N, 3), its points and others by the area of its triangles.
-
-    Parameters
-    ----------
-    surface : pyvista.PolyData
-    """
+    """Return the points of a surface and others by the area of its triangles, shape (N, 3)."""
     return np.concatenate([surface.points, _places(_triangles(surface)[1])])
 
 
 def sees(places: Array, place: Array, way: Array) -> bool:
     """Return whether an eye at infinity sees a place on a surface.
 
-    Parameters
-    ----------
-    places : ndarray, shape (N, 3)
-        Places of the surface, by :func:`places_on`.
-    place : ndarray, shape (3,)
-        Place.
-    way : ndarray, shape (3,)
-        Unit vector toward the eye.
+    ``places`` are those of the surface, by :func:`places_on`, and ``way`` is the unit vector toward
+    the eye.
     """
     return bool(_in_front(np.concatenate([[place], places]), 1, way)[0])
 
@@ -708,16 +622,7 @@ def sees(places: Array, place: Array, way: Array) -> bool:
 def seen_triangles(surface: pv.PolyData, toward: Vector) -> Indices:
     """Return the corners of some triangles that an eye sees, each by its share of the picture.
 
-    Parameters
-    ----------
-    surface : pyvista.PolyData
-        Surface.
-    toward : sequence of 3 float
-        Direction toward the eye.
-
-    Returns
-    -------
-    ndarray of int, shape (SEEN, 3), or (0, 3) where nothing is seen
+    They have the shape (SEEN, 3), or (0, 3) where nothing is seen.
     """
     corner_ids, corners, _ = _triangles(surface)
     way = np.asarray(toward, dtype=np.float64) / np.linalg.norm(toward)

@@ -66,12 +66,6 @@ def of_case(recipe: Recipe, case: Case) -> Case:
     """Return a case with room for insets, where a part of the data is not seen in one view.
 
     A view that is asked for stands alone.
-
-    Parameters
-    ----------
-    recipe : callable
-        Recipe that draws the case.
-    case : Case
     """
     wishes = case.wishes
     is_free = all(each is None for each in (wishes.view, wishes.views, wishes.frame))

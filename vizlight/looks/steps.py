@@ -55,13 +55,7 @@ class Step:
         return self._result
 
     def then(self, name: str, path: str) -> Step:
-        """Return the step that calls a function with this one's result alone, the same each time.
-
-        Parameters
-        ----------
-        name, path : str
-            As for a step.
-        """
+        """Return the step that calls a function with this one's result, the same each time."""
         return self._next.setdefault(path, Step(name, path, self))
 
     def hold(self, result: object) -> None:

@@ -79,13 +79,7 @@ def unit_of_bar(case: Case) -> str:
 
 
 def asked(wishes: Wishes) -> Wishes:
-    """Return the wishes with the views that were asked for, where these are several.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If one of them is no direction.
-    """
+    """Return the wishes with the views that were asked for, where these are several."""
     if not are_several(wishes.view):
         return wishes
     every: Foreign = wishes.view
@@ -100,12 +94,7 @@ def asked(wishes: Wishes) -> Wishes:
 
 
 def are_several(view: object) -> bool:
-    """Return whether a view is a sequence of views, and not one direction.
-
-    Parameters
-    ----------
-    view : object
-    """
+    """Return whether a view is a sequence of views, and not one direction."""
     return isinstance(view, list | tuple) and any(
         isinstance(part, str | list | tuple) for part in view
     )
@@ -131,15 +120,7 @@ def of_case(case: Case) -> Case:
 
 
 def of_pair(meshes: Sequence[pv.DataSet], wishes: Wishes) -> list[Views]:
-    """Return the views of the two hemispheres of a cortex, none of other meshes.
-
-    Parameters
-    ----------
-    meshes : sequence of pyvista.DataSet
-        Meshes of one picture.
-    wishes : Wishes
-        Wishes, which may have a view.
-    """
+    """Return the views of the two hemispheres of a cortex, none of other meshes."""
     sides = [brains.hemisphere(mesh) for mesh in meshes]
     is_free = wishes.view is None and wishes.frame is None
     return of_hemispheres(sides) if is_free and sorted(sides) == ["left", "right"] else []
@@ -148,10 +129,7 @@ def of_pair(meshes: Sequence[pv.DataSet], wishes: Wishes) -> list[Views]:
 def of_hemispheres(sides: Sequence[str]) -> list[Views]:
     """Return the views of hemispheres of the cortex: the lateral ones, then the medial ones.
 
-    Parameters
-    ----------
-    sides : sequence of {"left", "right"}
-        Side of each, on which the eye sees its lateral side.
+    The eye sees the lateral side of a hemisphere on the side of its name.
     """
     left, right = (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0)
     toward, names, ends = list[tuple[float, ...]](), list[str](), list[tuple[str, str]]()
