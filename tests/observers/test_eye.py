@@ -139,10 +139,10 @@ def test_a_line_that_is_mixed_with_the_background_is_unmixed():
     picture[:, 30:33], drawn[:, 30:33] = RED, True
     seen = PRINT.look(picture, drawn)
     at = np.array([30]), np.array([31])
-    found = colors_at(seen, *at, np.random.default_rng(0), 0.0)
-    np.testing.assert_allclose(found.lab[0], eye.lab(RED), atol=1)
+    colors = colors_at(seen, *at, np.random.default_rng(0), 0.0)
+    np.testing.assert_allclose(colors.lab[0], eye.lab(RED), atol=1)
     assert np.linalg.norm(seen.colors[30, 31] - eye.lab(RED)) > 10
-    assert found.deviation[0, 1] > 1.2 * found.deviation[0, 0] > 0.3
+    assert colors.deviation[0, 1] > 1.2 * colors.deviation[0, 0] > 0.3
 
 
 def test_dark_colours_on_a_bright_background_differ():
@@ -156,9 +156,9 @@ def test_dark_colours_on_a_bright_background_differ():
     at = np.full(6, 100), np.arange(70, 190, 20)
     # The filter alone leaves less than no light of half of them.
     assert (seen.colors_at(*at)[:, 0] == 0).sum() >= 3
-    found = colors_at(seen, *at, np.random.default_rng(0), 0.0)
+    colors = colors_at(seen, *at, np.random.default_rng(0), 0.0)
     expected = eye.lab(np.repeat(shades[:, np.newaxis], 3, axis=1))
-    np.testing.assert_allclose(found.lab[:, 0], expected[:, 0], atol=2.5)
+    np.testing.assert_allclose(colors.lab[:, 0], expected[:, 0], atol=2.5)
 
 
 def test_a_disc_has_the_share_of_the_filter_over_it():

@@ -159,9 +159,8 @@ def _shift(centre: Sequence[float]) -> list[str]:
 def volume(path: Path, time: object) -> pv.ImageData | pv.StructuredGrid:
     """Return a volume by nibabel in its frame: RAS, in millimetres, by the affine of its header.
 
-    Of a file of several steps, such as a functional image, one is loaded. The file is one of NIfTI,
-    FreeSurfer (.mgz), AFNI (.head) or MINC (.mnc); ``time`` is that of the step, as for
-    :func:`.series.chosen`.
+    The file is one of NIfTI, FreeSurfer (.mgz), AFNI (.head) or MINC (.mnc). If it has several
+    steps, as functional images do, that of ``time`` is loaded, as by :func:`.series.chosen`.
     """
     import nibabel
 

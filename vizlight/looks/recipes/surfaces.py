@@ -73,6 +73,8 @@ GRADED, FAR_FIELD = 100, 0.02
 AIR, NEAR_AIR = -1000.0, 50.0
 #: Largest share of the brightest value by which those of a scan that is resampled are below 0.
 RINGING = 0.1
+#: Most values of a scan that are looked at.
+MOST_VALUES = 100_000
 #: Key of a kind without a name, which is its title alone.
 TITLE_ALONE: Keywords = {"question": "value", "cmap": Step("", "vizlight.maps.kinds", {0: " "})}
 
@@ -341,7 +343,7 @@ def _keys(case: Case, scene: Step, title: str) -> list[Keywords]:
 def sample(case: Case, array: Named) -> Array:
     """Return some of the finite values of an array of one component."""
     rows: Array = np.asarray(case.data.run()[array.name], dtype=np.float64)
-    rows = rows[:: max(len(rows) // SAMPLE, 1)]
+    rows = rows[:: max(len(rows) // MOST_VALUES, 1)]
     return rows[np.isfinite(rows)]
 
 
